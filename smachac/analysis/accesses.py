@@ -88,7 +88,7 @@ def _fields_of_functions(leaf: Leaf) -> Iterator[Fields | None]:
             tree = python_tree(text.strip().strip("`"))
             known: Fields | None = None
             if isinstance(tree, ast.Lambda):
-                names = [each.arg for each in (*tree.args.posonlyargs, *tree.args.args)]
+                names = [argument.arg for argument in (*tree.args.posonlyargs, *tree.args.args)]
                 known = fields_of(tree.body, names[:1]) if names else None
             yield known
 
@@ -152,7 +152,7 @@ def unreceived_outputs(leaf: Leaf) -> frozenset[str]:
     listed = () if held is None or held.value.data is None else held.value.data
     if not isinstance(listed, tuple) or None in _fields_of_functions(leaf):
         return NONE  # a function that passes userdata on can set its keys
-    names = [each for each in listed if isinstance(each, str)]
+    names = [text for text in listed if isinstance(text, str)]
     left = [key.name for key in leaf.outputs if key.name not in names]
     if not left or len(names) < len(listed):
         return NONE
@@ -169,8 +169,8 @@ def _never_set(leaf: Leaf, outcome: str) -> frozenset[str]:
     outputs = {key.name for key in leaf.outputs}
     if any(word.text not in outputs for word in facts.writes):  # probably misspelt: SM308
         return NONE
-    ever = NONE.union(*(each.written or NONE for each in facts.endings))
-    known = [each.written for each in facts.endings if each.outcome.text == outcome]
+    ever = NONE.union(*(ending.written or NONE for ending in facts.endings))
+    known = [ending.written for ending in facts.endings if ending.outcome.text == outcome]
     return NONE.union(*(ever - keys for keys in known if keys is not None))
 
 
@@ -242,7 +242,9 @@ def function_body(text: str) -> tuple[ast.expr, frozenset[str]] | None:
     userdata has in it; None if the code is neither, or cannot be called with userdata alone."""
     body = python_tree(text.strip())
     if isinstance(body, ast.Lambda):
-        names = frozenset(each.arg for each in [*body.args.posonlyargs, *body.args.args][:1])
+        names = frozenset(
+            argument.arg for argument in [*body.args.posonlyargs, *body.args.args][:1]
+        )
         required = len(body.args.posonlyargs) + len(body.args.args) - len(body.args.defaults)
         if required != 1 or _reads_another(body, names):
             return None  # SM317, SM019
@@ -256,7 +258,7 @@ def function_body(text: str) -> tuple[ast.expr, frozenset[str]] | None:
 
 def _reads_another(tree: ast.Lambda, names: frozenset[str]) -> bool:
     """Whether a lambda reads userdata by a name that is not its argument."""
-    bound = names.union(each.arg for each in ast.walk(tree) if isinstance(each, ast.arg))
+    bound = names.union(node.arg for node in ast.walk(tree) if isinstance(node, ast.arg))
     others = [name for name in USERDATA if name not in bound]
     return any(isinstance(node, ast.Name) and node.id in others for node in ast.walk(tree.body))
 

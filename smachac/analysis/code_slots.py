@@ -76,9 +76,9 @@ def _slots(value: Value, fact: nodes.VariableType) -> Iterator[CodeSlot]:
     mapping = fact.role in ("callbacks", "conditions")
     data = value.data
     entries = data.entries if mapping and isinstance(data, Struct) else ((fact.name, data),)
-    for name, each in entries if mapping == isinstance(data, Struct) else ():
-        quoted = isinstance(each, str) and fact.unquoted != "function"
-        code = code_of(each, value)
+    for name, other in entries if mapping == isinstance(data, Struct) else ():
+        quoted = isinstance(other, str) and fact.unquoted != "function"
+        code = code_of(other, value)
         if code is not None and not (quoted and not isinstance(python_tree(code.text), ast.Lambda)):
             yield CodeSlot(
                 name=name,
@@ -115,18 +115,18 @@ def free_names(tree: ast.AST) -> list[ast.Name]:
                 if isinstance(node.ctx, ast.Load):
                     found.append((node, scopes))
             case ast.Lambda(args=args, body=body):
-                own = {each.arg for each in ast.walk(args) if isinstance(each, ast.arg)}
-                defaults = [each for each in (*args.defaults, *args.kw_defaults) if each]
-                todo.extend((each, scopes) for each in defaults)
+                own = {node.arg for node in ast.walk(args) if isinstance(node, ast.arg)}
+                defaults = [default for default in (*args.defaults, *args.kw_defaults) if default]
+                todo.extend((default, scopes) for default in defaults)
                 todo.append((body, (own, *scopes)))
             case ast.ListComp() | ast.SetComp() | ast.DictComp() | ast.GeneratorExp():
                 inner = (scopes[0], _stored(node), *scopes[1:])
-                todo.extend((each, inner) for each in ast.iter_child_nodes(node))
+                todo.extend((child, inner) for child in ast.iter_child_nodes(node))
             case _:
                 if isinstance(node, ast.NamedExpr):
                     scopes[0].add(node.target.id)
-                todo.extend((each, scopes) for each in ast.iter_child_nodes(node))
-    free = [name for name, scopes in found if not any(name.id in each for each in scopes)]
+                todo.extend((child, scopes) for child in ast.iter_child_nodes(node))
+    free = [name for name, scopes in found if not any(name.id in scope for scope in scopes)]
     return sorted(free, key=lambda name: (name.lineno, name.col_offset))
 
 
@@ -141,9 +141,9 @@ def free_in(text: str) -> tuple[ast.Name, ...]:
 
 def _stored(node: ast.AST) -> set[str]:
     return {
-        each.id
-        for each in ast.walk(node)
-        if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)
+        name.id
+        for name in ast.walk(node)
+        if isinstance(name, ast.Name) and isinstance(name.ctx, ast.Store)
     }
 
 
@@ -198,7 +198,7 @@ def userdata_parameter(slot: CodeSlot) -> str | None:
         return None
     if not isinstance(tree, ast.Lambda) or not accepts(tree, len(slot.arguments)):
         return None
-    if swapped([each.arg for each in parameters(tree)], slot.arguments):  # SM317
+    if swapped([parameter.arg for parameter in parameters(tree)], slot.arguments):  # SM317
         return None
     at, names = slot.arguments.index("userdata"), parameters(tree)
     return names[at].arg if at < len(names) else None

@@ -149,7 +149,7 @@ class Context:
 
     @cached_property
     def _with_values(self) -> Preorder:
-        return Preorder([each for each in self.states if _has_values(each[1])], _has_values)
+        return Preorder([state for state in self.states if _has_values(state[1])], _has_values)
 
     @cached_property
     def _containers(self) -> Preorder:
@@ -176,7 +176,7 @@ class Context:
         """The containers of `linear` with a transition for an unknown outcome, or to an unknown
         target."""
         pairs = zip(self.linear, self.absorbed, strict=True)
-        return tuple(each for each, whole in pairs if whole is not each[1])
+        return tuple(pair for pair, whole in pairs if whole is not pair[1])
 
     @cached_property
     def spans(self) -> dict[str, Span]:
@@ -215,15 +215,15 @@ class Context:
     @cached_property
     def item_reads(self) -> tuple[ItemRead, ...]:
         """The reads of the list of a loop that mean its item."""
-        found = [each for some in self._reaching.values() for each in some]
+        found = [clash for some in self._reaching.values() for clash in some]
         return tuple(item_reads(found, dict(self.containers))) if found else ()
 
     @cached_property
     def clashes(self) -> dict[MisfitKind, list[Clash]]:
         """The type clashes whose value reaches its reader, by kind; not those of `item_reads`."""
-        taken = {id(each.clash) for each in self.item_reads}
+        taken = {id(read.clash) for read in self.item_reads}
         return {
-            kind: [each for each in found if id(each) not in taken]
+            kind: [clash for clash in found if id(clash) not in taken]
             for kind, found in self._reaching.items()
         }
 
@@ -264,7 +264,7 @@ class Context:
 
     def missing_keys(self, *causes: Cause) -> list[Missing]:
         """The keys that are missing for one of these causes, in the order of the script."""
-        return [each for each in self._missing_keys if each.cause in causes]
+        return [key for key in self._missing_keys if key.cause in causes]
 
     @cached_property
     def lost_outputs(self) -> tuple[Lost, ...]:
@@ -299,7 +299,7 @@ class Context:
     @cached_property
     def stop_paths(self) -> StopPaths:
         """Where the machine continues after a stop."""
-        judged = {each.path: each for each in self.judged}
+        judged = {other.path: other for other in self.judged}
 
         def holds(path: str) -> bool:
             return bool(self.claims.get(path))

@@ -75,7 +75,9 @@ class _Constants:
         """The initial value of a key that no state sets; None if it has another one, or none."""
         while True:
             written = self._written_in(scope)
-            presets = [each.value.data for each in scope.container.userdata if each.key == key]
+            presets = [
+                preset.value.data for preset in scope.container.userdata if preset.key == key
+            ]
             if written is None or key in written:
                 return None
             if key not in scope.inputs:
@@ -134,7 +136,7 @@ def _test(known: _Constants, scope: UserdataScope, leaf: Node, key: str) -> Test
         return None
     conditions = functions(leaf, "conditions")
     own, default = _own_name(inputs_from(leaf, key)), variable(leaf, "default_outcome") or DEFAULT
-    named = {each.name for each in leaf.inputs}.intersection(outcome_names(leaf))
+    named = {input_.name for input_ in leaf.inputs}.intersection(outcome_names(leaf))
     if not conditions or not isinstance(default, str) or not named <= conditions.keys():
         return None
     compared: list[tuple[str, Callable[[Number, Number], bool], Number, bool]] = []

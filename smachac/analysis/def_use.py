@@ -62,7 +62,7 @@ def search(
             both: tuple[KeyState, ...] = (state,)
             if step.target in beside and state != "set":
                 both = ("set", state)
-            for reached in (Reached(step.target, each) for each in both):
+            for reached in (Reached(step.target, text) for text in both):
                 if reached not in found:
                     found[reached] = (here, step.outcome)
                     todo.append(reached)

@@ -153,7 +153,7 @@ def _is_unchanged(
     known: Mapping[str, UserdataScope],
 ) -> bool:
     inner = (f"{scope.path}/{name}" for name in scope.inner)
-    return scope.container is container and all(found[each] is known[each] for each in inner)
+    return scope.container is container and all(found[text] is known[text] for text in inner)
 
 
 def _scope(
@@ -243,8 +243,8 @@ def _endings(
     if not outputs:
         return {vertex[1]: NOTHING for vertex in unheld}
     without_sure = without_trusted
-    written = [each.writes for leading in steps.values() for each in leading]
-    if any(_is_trusted(each) for each in written if each is not NOTHING):
+    written = [step.writes for leading in steps.values() for step in leading]
+    if any(_is_trusted(writes) for writes in written if writes is not NOTHING):
         without_sure = may_be_unset(unheld, steps, order, sure=True)
     perhaps = may_be_set(unheld, steps, order)
 
@@ -423,10 +423,10 @@ def _either(several: Iterable[Writes]) -> Writes:
     """The writes of one of several steps, when it is not known which of them is taken."""
     ways = list(several)
     return Writes(
-        frozenset.intersection(*(each.sure for each in ways)),
-        frozenset.intersection(*(each.trusted for each in ways)),
-        frozenset.union(*(each.perhaps for each in ways)),
-        all(each.anything for each in ways),
+        frozenset.intersection(*(way.sure for way in ways)),
+        frozenset.intersection(*(way.trusted for way in ways)),
+        frozenset.union(*(way.perhaps for way in ways)),
+        all(way.anything for way in ways),
     )
 
 
@@ -439,10 +439,10 @@ class _ChildrenTogether:
 
     def __init__(self, every: Mapping[str, ChildEndings]) -> None:
         self._all = {name: _either(endings.values()) for name, endings in every.items()}
-        self._sure = NONE.union(*(each.sure for each in self._all.values()))
-        self._trusted = NONE.union(*(each.trusted for each in self._all.values()))
-        self.perhaps = Counter(key for each in self._all.values() for key in each.perhaps)
-        self._anything = any(each.anything for each in self._all.values())
+        self._sure = NONE.union(*(writes.sure for writes in self._all.values()))
+        self._trusted = NONE.union(*(writes.trusted for writes in self._all.values()))
+        self.perhaps = Counter(key for writes in self._all.values() for key in writes.perhaps)
+        self._anything = any(writes.anything for writes in self._all.values())
 
     def writes(self, left: Mapping[str, ChildEndings]) -> Writes:
         """The writes when each child in `left` has one of the outcomes there.
@@ -457,8 +457,8 @@ class _ChildrenTogether:
         )
         never = frozenset(key for key, times in lost.items() if times == self.perhaps[key])
         return Writes(
-            self._sure.union(*(each.sure for each in fewer.values())),
-            self._trusted.union(*(each.trusted for each in fewer.values())),
+            self._sure.union(*(writes.sure for writes in fewer.values())),
+            self._trusted.union(*(writes.trusted for writes in fewer.values())),
             frozenset(self.perhaps).difference(never),
             self._anything,
         )
@@ -488,7 +488,11 @@ def _left_by_no_rule(
     exclude fewer is sound.
     """
     left: dict[str, ChildEndings] = {}
-    conditions = [{(each.child, each.outcome) for each in rule.when} for rule in rules if rule.when]
+    conditions = [
+        {(condition.child, condition.outcome) for condition in rule.when}
+        for rule in rules
+        if rule.when
+    ]
     for _ in range(MOST_ROUNDS):
         before = sum(map(len, left.values())), len(left)
         for pairs in conditions:
@@ -502,7 +506,7 @@ def _left_by_no_rule(
             child, outcome = open_[0]
             known = left.get(child) or every.get(child, {})
             if len(open_) == 1 and outcome in known:
-                left[child] = {name: each for name, each in known.items() if name != outcome}
+                left[child] = {name: writes for name, writes in known.items() if name != outcome}
         if before == (sum(map(len, left.values())), len(left)):
             break
     return left

@@ -57,7 +57,7 @@ def _container_ends(container: Container, ends: Mapping[str, Ends]) -> Ends:
         case Concurrence(sugar="timeout"):
             return _limited_ends(container, ends)
         case Concurrence():
-            least = [min(each.values()) for each in ends.values() if each]
+            least = [min(end.values()) for end in ends.values() if end]
             whole = (max if container.join == "all" else min)(least, default=0.0)
             return dict.fromkeys(outcome_names(container), whole)
         case nodes.Iterator():
@@ -111,7 +111,7 @@ def time_limit_span(container: Concurrence) -> Span:
 def _timer(container: Concurrence) -> Leaf | None:
     """The state that waits in a concurrence made of a time limit."""
     timers = (child for child in container.children if child.name != container.name)
-    return next((each for each in timers if isinstance(each, Leaf)), None)
+    return next((timer for timer in timers if isinstance(timer, Leaf)), None)
 
 
 def _iterator_ends(container: nodes.Iterator, ends: Mapping[str, Ends]) -> Ends:

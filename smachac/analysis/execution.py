@@ -132,7 +132,9 @@ class Execution:
             if parent >= 0:
                 self.children[parent].append(number)
             if not isinstance(node, Leaf):
-                todo.extend((each, f"{path}/{each.name}", number) for each in node.children[::-1])
+                todo.extend(
+                    (child, f"{path}/{child.name}", number) for child in node.children[::-1]
+                )
         for number in range(len(self.nodes) - 1, 0, -1):
             parent = self.parents[number]
             self.last[parent] = max(self.last[parent], self.last[number])
@@ -245,7 +247,10 @@ def _named_outcomes(node: Concurrence, child: str) -> frozenset[str]:
     """The outcomes of a child that the rules of a concurrence name. All others have the same
     effect, so configurations do not distinguish them."""
     return frozenset(
-        each.outcome for rule in node.rules for each in rule.when if each.child == child
+        condition.outcome
+        for rule in node.rules
+        for condition in rule.when
+        if condition.child == child
     )
 
 
@@ -368,7 +373,7 @@ class _Turn:
         ends = dict(zip(names, results, strict=True))
         best, most = container.default_outcome, 0
         for rule in container.rules:
-            holds = all(ends.get(each.child) == each.outcome for each in rule.when)
+            holds = all(ends.get(condition.child) == condition.outcome for condition in rule.when)
             if holds and len(rule.when) >= most:
                 best, most = rule.outcome, len(rule.when)
         return self.ended(node, best)
@@ -376,7 +381,7 @@ class _Turn:
     def recall(self, node: int) -> None:
         """Withdraw the requests of a state and of all states below it."""
         end = self.run.last[node]
-        self.asked = {each for each in self.asked if not node <= each <= end}
+        self.asked = {number for number in self.asked if not node <= number <= end}
 
     def iterate(self, node: int) -> Control:
         """Start an iterator: with its first item, or at its end if there is none."""

@@ -138,7 +138,7 @@ def function_faults(text: str, userdata: Type) -> tuple[Fault, ...]:
 def always_fails(expression: Expression, userdata: Names) -> bool:
     """Whether a function of the script never gives a value, over the types of the keys it reads."""
     found = function_faults(expression.text, mapping(userdata.items()))
-    return any(each.kind == "operation" and each.always and not each.length for each in found)
+    return any(fault.kind == "operation" and fault.always and not fault.length for fault in found)
 
 
 def _names(expr: Expr) -> Iterator[str]:
@@ -465,8 +465,8 @@ def _size(type_: Type) -> int | None:
 
 def _without_quotes(left: Expr, right: Expr) -> str | None:
     """The help for a number that is written as a text: one side of an operation."""
-    for each in (left, right):
-        text = each.value if isinstance(each, Constant) else None
+    for item in (left, right):
+        text = item.value if isinstance(item, Constant) else None
         if isinstance(text, str) and re.fullmatch(r"-?\d+(\.\d+)?", text):
             return f"write `{text}` without quotes"
     return None
@@ -527,7 +527,9 @@ def kinds(type_: Type) -> Kinds:
     """The kinds that a value of a type can have: `number`, `text`, `list`, `mapping`, `struct`,
     `nothing`. Empty if they are unknown, as for `T?`, which conditions usually test before."""
     if type_.name in ("literal", "one_of"):
-        return frozenset("text" if isinstance(each, str) else "number" for each in type_.args)
+        return frozenset(
+            "text" if isinstance(argument, str) else "number" for argument in type_.args
+        )
     return _KINDS.get(type_.name, ANYTHING)
 
 
@@ -589,19 +591,19 @@ def has_attribute(type_: Type, name: str) -> bool:
     if type_.name in ATTRIBUTES:
         return name.startswith("_") or name in ATTRIBUTES[type_.name]
     found = kinds(type_)
-    return not found or any(hasattr(each, name) for kind in found for each in _BUILT_IN[kind])
+    return not found or any(hasattr(type_, name) for kind in found for type_ in _BUILT_IN[kind])
 
 
 def _attributes(type_: Type) -> list[str]:
     """The attributes that values of a type have in Python."""
-    classes = [each for kind in kinds(type_) for each in _BUILT_IN.get(kind, ())]
-    return sorted({name for each in classes for name in dir(each) if not name.startswith("_")})
+    classes = [other for kind in kinds(type_) for other in _BUILT_IN.get(kind, ())]
+    return sorted({name for class_ in classes for name in dir(class_) if not name.startswith("_")})
 
 
 def is_method(type_: Type, name: str) -> bool:
     """Whether an attribute is a method of every value of a type."""
-    classes = [each for kind in kinds(type_) for each in _BUILT_IN.get(kind, (object,))]
-    return bool(classes) and all(callable(getattr(each, name, None)) for each in classes)
+    classes = [other for kind in kinds(type_) for other in _BUILT_IN.get(kind, (object,))]
+    return bool(classes) and all(callable(getattr(class_, name, None)) for class_ in classes)
 
 
 def can_be_indexed(owner: Type, index: Type) -> bool:

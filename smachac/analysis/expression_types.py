@@ -284,7 +284,7 @@ def _binary(word: str, left: Type, right: Type) -> Type:
         case "+", "str", "str":
             return STR
         case "+", "list" | "array", "list" | "array":
-            both = [item_of(each) for each in (left, right) if each.args]
+            both = [item_of(type_) for type_ in (left, right) if type_.args]
             return Type("list", (widened(joined(both)),)) if both else LIST
         case ("*", "str", "int") | ("*", "int", "str") | ("%", "str", _):
             return STR

@@ -73,9 +73,9 @@ def failures(
             continue
         for name in outcome_names(node):
             if starts_failure(node, name) and (path, name) in routes.before:
-                for each in _failures(routes, ends, path, node, name, plain):
-                    next = plain.get(each.next, each.next)
-                    yield replace(each, path=plain.get(path, path), next=next)
+                for failure in _failures(routes, ends, path, node, name, plain):
+                    next = plain.get(failure.next, failure.next)
+                    yield replace(failure, path=plain.get(path, path), next=next)
 
 
 def _failures(
@@ -93,7 +93,9 @@ def _failures(
     arrivals = routes.arrivals(path, name)
     good_ways = _after_success(routes, path, node)
     # In a concurrence a success leads wherever the failure of another branch does.
-    same = len(good_ways) == 1 or good_ways == {(each.target, _final(each)) for each in arrivals}
+    same = len(good_ways) == 1 or good_ways == {
+        (arrival.target, _final(arrival)) for arrival in arrivals
+    }
     alike = good_ways if same else set[tuple[str, str]]()
     for arrival in arrivals:
         last: Event = (arrival.target, "") if arrival.target else arrival.through[-1]

@@ -34,8 +34,10 @@ def filled_loops(
 
     `known` are the accesses of every state, `containers` have parents before children.
     """
-    loops = [each for each in containers if isinstance(each[1], nodes.Iterator)]
-    if not any(isinstance(each, nodes.Iterator) and each.items_key for _, each in loops):
+    loops = [container for container in containers if isinstance(container[1], nodes.Iterator)]
+    if not any(
+        isinstance(container, nodes.Iterator) and container.items_key for _, container in loops
+    ):
         return frozenset()
     lists = _lists(containers, known)
     if not any(lists.values()):

@@ -106,7 +106,7 @@ def _inside(place: _Place, userdata: frozenset[str]) -> Iterator[_Place]:
             yield from _comprehension(place, node, userdata)
         case ast.Call(func=function, args=given, keywords=keywords):
             yield replace(place, node=function)
-            for value in (*given, *(each.value for each in keywords)):
+            for value in (*given, *(keyword.value for keyword in keywords)):
                 if not isinstance(value, ast.Lambda):
                     yield replace(place, node=value)
             yield from _function_of_items(place, node, userdata)
@@ -128,15 +128,15 @@ def _after(place: _Place, tests: Sequence[ast.expr], userdata: frozenset[str]) -
     if not tests:
         return place
     return replace(
-        place, guards=place.guards.union(*(_mentioned(each, userdata) for each in tests))
+        place, guards=place.guards.union(*(_mentioned(test, userdata) for test in tests))
     )
 
 
 def _mentioned(node: ast.expr, userdata: frozenset[str]) -> frozenset[str]:
     """The names, the keys of userdata and the texts, in quotes, in code."""
     every = [*ast.walk(node)]
-    names = {each.id for each in every if isinstance(each, ast.Name)} - userdata
-    texts = {repr(each.value) for each in every if isinstance(each, ast.Constant)}
+    names = {name.id for name in every if isinstance(name, ast.Name)} - userdata
+    texts = {repr(node.value) for node in every if isinstance(node, ast.Constant)}
     return frozenset(names | texts).union(_keys(node, userdata))
 
 
@@ -165,7 +165,7 @@ def _function_of_items(place: _Place, node: ast.Call, userdata: frozenset[str]) 
         case ast.Call(func=ast.Name(id=name), args=[items], keywords=keywords) if (
             name in OVER_ITEMS
         ):
-            found = [each.value for each in keywords if each.arg == "key"]
+            found = [keyword.value for keyword in keywords if keyword.arg == "key"]
         case ast.Call(func=ast.Name(id="map" | "filter"), args=[function, items]):
             found = [function]
         case _:
@@ -195,7 +195,7 @@ def _with_item(
         ):
             owner = _type(value, place.names)
             item, inner = inside(owner) if owner.name == "dict" else ANY, second
-    bound = {each.id for each in ast.walk(target) if isinstance(each, ast.Name)}
+    bound = {node.id for node in ast.walk(target) if isinstance(node, ast.Name)}
     types = dict(place.names) | dict.fromkeys(bound, ANY)
     owners = {name: keys for name, keys in place.items.items() if name not in bound}
     guards = place.guards - bound
@@ -203,9 +203,9 @@ def _with_item(
         types[inner.id] = item
         origins = {
             name
-            for each in ast.walk(items)
-            if isinstance(each, ast.Name)
-            for name in place.items.get(each.id, ())
+            for node in ast.walk(items)
+            if isinstance(node, ast.Name)
+            for name in place.items.get(node.id, ())
         }
         owners[inner.id] = tuple(dict.fromkeys([*_keys(items, userdata), *sorted(origins)]))
     return replace(place, names=types, items=owners, guards=guards)

@@ -74,7 +74,7 @@ def _fits_item(clash: Clash) -> bool:
     """Whether the items of a list fit the reader of the list."""
     value, wanted = clash.flow.value, clash.cell.declared
     if isinstance(value, tuple):
-        return bool(value) and all(misfit(type_of_data(each), wanted) is None for each in value)
+        return bool(value) and all(misfit(type_of_data(other), wanted) is None for other in value)
     item = item_of(clash.flow.type)
     return not is_open(item) and misfit(item, wanted) is None
 
@@ -100,7 +100,7 @@ def _at(clash: Clash, loop: nodes.Iterator, levels: list[_Level]) -> ItemRead | 
     lacking: list[str] = []
     declared: list[tuple[str, str]] = []
     for path, node, key, _ in levels:
-        found = next((each for each in node.remaps if each.key == key), None)
+        found = next((remap for remap in node.remaps if remap.key == key), None)
         if found is not None:
             return ItemRead(
                 clash, path, node, key, found.to, item, found.to_span, tuple(lacking),

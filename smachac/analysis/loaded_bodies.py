@@ -57,7 +57,7 @@ class LoadingOrder:
         if (path, "") in self._after[body] or self._visits > MOST_VISITS:
             return None
         tested = self._reached(failed)
-        late = self._visits <= MOST_VISITS and not any((each, "") in tested for each in loaders)
+        late = self._visits <= MOST_VISITS and not any((loader, "") in tested for loader in loaders)
         return loaders[0] if late else None
 
     def _loaded(self, loaders: Iterable[str]) -> Iterator[Event]:

@@ -63,7 +63,7 @@ def _lost(flow: DataFlow, lost_keys: Iterable[Missing], fact_of: FactOf) -> Iter
                 for level in _levels(flow, scope, own, writer)
                 if level.key in fact_of(_read, level.scope.path, level.scope)
             ]
-            left -= sum(len(each.scope.steps) + len(each.scope.reads) for each in levels)
+            left -= sum(len(level.scope.steps) + len(level.scope.reads) for level in levels)
             if not is_named and levels:
                 left -= len(scope.steps) + len(scope.reads)
                 if not _is_for_outside(scope, writer, own):
@@ -257,7 +257,7 @@ def _kept(scope: UserdataScope) -> tuple[_Kept, ...]:
                 found.append(_Kept(use, False))
             continue
         is_named = key is not None and key.span.source is child.span.source
-        if not is_named and all(each.name != use.key for each in child.inputs):
+        if not is_named and all(input_.name != use.key for input_ in child.inputs):
             is_named = any(remap.key == use.key for remap in child.remaps)
         if is_named or own in scope.inputs:
             found.append(_Kept(use, is_named))
@@ -267,11 +267,11 @@ def _kept(scope: UserdataScope) -> tuple[_Kept, ...]:
 def _is_set_in(node: Node, key: str) -> bool:
     """Whether a leaf in a node has an output that becomes an output of the node."""
     if isinstance(node, Leaf):
-        return any(each.name == key for each in node.outputs)
+        return any(output.name == key for output in node.outputs)
     return any(
-        outer == key and _is_set_in(child, each.name)
+        outer == key and _is_set_in(child, output.name)
         for child in node.children
-        for each, outer in zip(child.outputs, outer_outputs(child), strict=True)
+        for output, outer in zip(child.outputs, outer_outputs(child), strict=True)
     )
 
 

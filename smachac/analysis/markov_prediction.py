@@ -108,7 +108,7 @@ class MarkovModel:
                 if fails(node, outcome) and 0 < probability < 1:
                     gain = _share(self._without(path, outcome), successes) - base
                     found.append(Sensitivity(path, outcome, probability, gain))
-        return sorted(found, key=lambda each: -each.gain)
+        return sorted(found, key=lambda sensitivity: -sensitivity.gain)
 
     def _without(self, path: str, outcome: str) -> Prediction:
         """The prediction of the machine if a leaf never has an outcome: only the containers around
@@ -202,7 +202,7 @@ class MarkovModel:
         """
         here = [f"{path}/{child.name}" for child in node.children]
         own = self.measured[path]
-        if any(each not in self._known for each in here) or self._stopped(path):
+        if any(text not in self._known for text in here) or self._stopped(path):
             return self._as_measured(path, node)
         if node.sugar:
             outcomes = dict(self._known[here[0]].outcomes)
@@ -210,7 +210,7 @@ class MarkovModel:
                 late = outcomes.pop(PREEMPTED)
                 outcomes[node.default_outcome] = outcomes.get(node.default_outcome, 0.0) + late
             return self._weighted(outcomes, dict.fromkeys(here, 1.0), own.seconds)
-        branches = [self._known[each].outcomes for each in here]
+        branches = [self._known[text].outcomes for text in here]
         if node.join == "any" or prod(map(len, branches)) > MOST_COMBINATIONS:
             return self._as_measured(path, node)
         names = [child.name for child in node.children]

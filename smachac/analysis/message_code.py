@@ -72,13 +72,13 @@ def nested_messages(content: Sequence[Message | FieldType], found: Definitions) 
     """The messages of some types; empty if one of them is a list, has no definition or is no
     message."""
     messages: list[Message] = []
-    for each in content:
-        if isinstance(each, Message):
-            messages.append(each)
-        elif each.array or ("msg", each.name) not in found:
+    for item in content:
+        if isinstance(item, Message):
+            messages.append(item)
+        elif item.array or ("msg", item.name) not in found:
             return []
         else:
-            messages += [one.part("message") for one in found["msg", each.name]]
+            messages += [one.part("message") for one in found["msg", item.name]]
     return messages
 
 
@@ -112,7 +112,7 @@ def message_code(
     known: dict[str, Content] = {}
     for kind, definitions in leaf_definitions(leaf, found):
         for part in PARTS[kind]:
-            known[part] = tuple(each.part(part) for each in definitions)
+            known[part] = tuple(definition.part(part) for definition in definitions)
     if known.keys().isdisjoint(due):
         return None
     function = functions.get(slot.code.text)
@@ -125,7 +125,7 @@ def message_code(
         tree = slot.tree
         if not isinstance(tree, ast.Lambda) or not accepts(tree, len(due)):
             return None
-        names = tuple(each.arg for each in parameters(tree))
+        names = tuple(parameter.arg for parameter in parameters(tree))
         if swapped(names, due):
             return None
         uses, returned = _lambda_uses(slot, tree)
@@ -146,10 +146,10 @@ def _lambda_uses(slot: CodeSlot, tree: ast.Lambda) -> tuple[ArgumentUses, tuple[
     """The uses of arguments in a lambda, none if it tests with `hasattr` for fields, and its
     results."""
     nodes = list(ast.walk(tree.body))
-    stored = {each.target.id for each in nodes if isinstance(each, ast.NamedExpr)}
-    own = {each.arg for each in parameters(tree)} - stored
-    names = {each for each in free_names(tree.body) if each.id in own}
-    tested = any(isinstance(each, ast.Name) and each.id == "hasattr" for each in nodes)
+    stored = {node.target.id for node in nodes if isinstance(node, ast.NamedExpr)}
+    own = {parameter.arg for parameter in parameters(tree)} - stored
+    names = {name for name in free_names(tree.body) if name.id in own}
+    tested = any(isinstance(node, ast.Name) and node.id == "hasattr" for node in nodes)
 
     def place(node: ast.expr) -> Span:
         return node_place(slot.code, node)
@@ -157,20 +157,20 @@ def _lambda_uses(slot: CodeSlot, tree: ast.Lambda) -> tuple[ArgumentUses, tuple[
     uses = argument_uses(nodes, names, place)
     if tested:
         uses = uses._replace(parts=(), operands=())
-    return uses, tuple(result_of(each, names, place) for each in results(tree))
+    return uses, tuple(result_of(result, names, place) for result in results(tree))
 
 
 def _content(content: Content, steps: Sequence[str | None], found: Definitions) -> Content:
     """What a field of a message, or an item of a list, holds at the end of some steps."""
     for step in steps:
         if step is not None:
-            fields = [each.field(step) for each in nested_messages(content, found)]
-            content = tuple(each.type for each in fields if each is not None)
+            fields = [message.field(step) for message in nested_messages(content, found)]
+            content = tuple(field.type for field in fields if field is not None)
             if len(content) != len(fields):
                 return ()
         else:
-            lists = [each for each in content if isinstance(each, FieldType) and each.array]
+            lists = [type_ for type_ in content if isinstance(type_, FieldType) and type_.array]
             if len(lists) != len(content):
                 return ()
-            content = tuple(FieldType(name=each.name, longest=each.longest) for each in lists)
+            content = tuple(FieldType(name=list_.name, longest=list_.longest) for list_ in lists)
     return content

@@ -35,9 +35,9 @@ def excludes_null(child: Node, key: str, outcome: str) -> bool:
         return False
     known = guards(child)
     if known:
-        return not known.get(outcome, NONE).isdisjoint(each.name for each in own)
+        return not known.get(outcome, NONE).isdisjoint(key.name for key in own)
     several = len([name for name in outcome_names(child) if name != PREEMPTED]) > 1
-    return several and any(each.type.name == "optional" for each in own)
+    return several and any(key.type.name == "optional" for key in own)
 
 
 def guards(leaf: Leaf) -> Mapping[str, Keys]:
@@ -69,10 +69,10 @@ def _facts(body: ast.expr, names: Keys) -> _Facts:
             return _Facts(facts.false, facts.true)
         case ast.BoolOp(op=op, values=values):
             parts = [_facts(value, names) for value in values]
-            any_true = frozenset.union(*(each.true for each in parts))
-            any_false = frozenset.union(*(each.false for each in parts))
-            all_true = frozenset.intersection(*(each.true for each in parts))
-            all_false = frozenset.intersection(*(each.false for each in parts))
+            any_true = frozenset.union(*(part.true for part in parts))
+            any_false = frozenset.union(*(part.false for part in parts))
+            all_true = frozenset.intersection(*(part.true for part in parts))
+            all_false = frozenset.intersection(*(part.false for part in parts))
             if isinstance(op, ast.And):
                 return _Facts(any_true, all_false)
             return _Facts(all_true, any_false)

@@ -80,7 +80,7 @@ def _unstopped(path: str, node: Node, found: Endings) -> tuple[str, ...]:
         case Concurrence():
             concurrence = sound_concurrence(path, node)
             spaces = (
-                [each for each, _ in unstopped_spaces(concurrence, *found)] if concurrence else []
+                [entry for entry, _ in unstopped_spaces(concurrence, *found)] if concurrence else []
             )
             return _declared(node, results(node, concurrence, spaces))
     return _of_container(path, node, found.unstopped, asked=False)
@@ -163,12 +163,12 @@ def results(
         return set(outcome_names(node)) if node.children else set()
     found: set[str] = set()
     try:
-        for each in spaces:
-            if concurrence.rules.find(each, {}, concurrence.rules.all) is not None:
+        for entry in spaces:
+            if concurrence.rules.find(entry, {}, concurrence.rules.all) is not None:
                 found.add(node.default_outcome)
             for number, rule in enumerate(concurrence.written):
                 given = concurrence.rules.conditions[number]
-                if concurrence.rules.find(each, given, concurrence.larger(number)) is not None:
+                if concurrence.rules.find(entry, given, concurrence.larger(number)) is not None:
                     found.add(rule.outcome)
     except UndecidedError:
         return set(outcome_names(node))
@@ -203,7 +203,7 @@ def judged(containers: Iterable[tuple[str, Container]], known: Endings) -> list[
         concurrence = sound_concurrence(path, container)
         if concurrence is not None:
             spaces = unstopped_spaces(concurrence, *known)
-            unstopped = [(without_other(each), first) for each, first in spaces]
+            unstopped = [(without_other(entry), first) for entry, first in spaces]
             found.append(
                 Judged(path, concurrence, known, space(concurrence, known.ever), unstopped)
             )

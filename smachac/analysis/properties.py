@@ -105,14 +105,14 @@ def judge(properties: Sequence[Property], root: StateMachine, claims: Held) -> l
     found: list[Judgement] = []
     limit, left = MOST_PAIRS + PAIRS_BY_STATE * len(plain.nodes), MOST_IN_ALL
     iterates = any(isinstance(node, Iterator) for node in plain.nodes)
-    for each in properties:
-        few = iterates and isinstance(each.form, AlwaysEnds)
-        key = (each.exceptions, each.stops, few)
+    for property_ in properties:
+        few = iterates and isinstance(property_.form, AlwaysEnds)
+        key = (property_.exceptions, property_.stops, few)
         if key not in executions:
             executions[key] = Execution(
-                root, exceptions=each.exceptions, stops=each.stops, few_items=few
+                root, exceptions=property_.exceptions, stops=property_.stops, few_items=few
             )
-        judgement, used = _judged(each, executions[key], names, min(limit, left))
+        judgement, used = _judged(property_, executions[key], names, min(limit, left))
         found.append(judgement)
         left -= used
         if judgement.verdict == "undecided":
@@ -134,7 +134,9 @@ def _judged(
                 continue
             for event in events:
                 watched[event] = watched.get(event, 0) | part.bits
-    states = tuple(execution.paths[number] for number in dict.fromkeys(each for each, _ in watched))
+    states = tuple(
+        execution.paths[number] for number in dict.fromkeys(number for number, _ in watched)
+    )
     if faults:
         return Judgement(given, "unclear", None, tuple(faults), states), 0
     if isinstance(given.form, After) and given.form.within:
@@ -271,7 +273,7 @@ def _endless(execution: Execution, limit: int) -> tuple[Counterexample | None, i
         if last.config.outcome is None and all(step.leaf == STOP for step in following):
             return Counterexample(_visits(execution, _steps_to(here, before))), len(before)
         reached = [(reach(here, step), step) for step in following]
-        ahead.append([each for each in reached if each[1].leaf != STOP])
+        ahead.append([pair for pair in reached if pair[1].leaf != STOP])
         if len(before) > limit:
             raise TooLargeError
     first = _first_in_loop(ahead)
@@ -295,11 +297,13 @@ def _first_in_loop(ahead: Sequence[Sequence[Arrival]]) -> int | None:
     import networkx as nx
 
     graph = nx.DiGraph()
-    graph.add_edges_from((here, there) for here, each in enumerate(ahead) for there, _ in each)
+    graph.add_edges_from(
+        (here, there) for here, sequence in enumerate(ahead) for there, _ in sequence
+    )
     loops = (
         min(region)
         for region in nx.strongly_connected_components(graph)
-        if len(region) > 1 or any(graph.has_edge(each, each) for each in region)
+        if len(region) > 1 or any(graph.has_edge(item, item) for item in region)
     )
     return min(loops, default=None)
 

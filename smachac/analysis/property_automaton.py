@@ -57,11 +57,11 @@ def automaton(form: Form) -> Automaton:
     match form:
         case Never(after=after):
             if not after:
-                return Automaton([[_too_early(_swapped(each)) for each in bits], [1] * 16])
-            idle = [int(bool(each & PREMISE)) for each in bits]
-            return Automaton([idle, [_forbidden(each) for each in bits]])
+                return Automaton([[_too_early(_swapped(bit)) for bit in bits], [1] * 16])
+            idle = [int(bool(bit & PREMISE)) for bit in bits]
+            return Automaton([idle, [_forbidden(bit) for bit in bits]])
         case Before():
-            return Automaton([[_too_early(each) for each in bits], [1] * 16])
+            return Automaton([[_too_early(bit) for bit in bits], [1] * 16])
         case AtMost(times=times):
             rows = [[n + 1 if b & PREMISE else n for b in bits] for n in range(times)]
             return Automaton([*rows, [BAD if b & PREMISE else times for b in bits]])

@@ -60,7 +60,7 @@ class NamedStates:
         if atom.subject == "path":
             found = self._of_path(atom.name)
             if len(found) > 1:
-                return NameFault("ambiguous", atom, tuple(self.paths[each] for each in found))
+                return NameFault("ambiguous", atom, tuple(self.paths[number] for number in found))
             known: Mapping[str, object] = self._ends
         else:
             known = tables[atom.subject]

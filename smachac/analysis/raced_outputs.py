@@ -31,13 +31,13 @@ def raced_output(
         own = accesses.get(f"{path}/{child.name}")
         for key in own.writes if own is not None else ():
             writers.setdefault(key, []).append(child)
-    inputs = {each.name for each in container.inputs}
-    unset = [each.name for each in container.outputs if each.name not in {*writers, *inputs}]
+    inputs = {input_.name for input_ in container.inputs}
+    unset = [output.name for output in container.outputs if output.name not in {*writers, *inputs}]
     raced = [(key, nodes) for key, nodes in writers.items() if len(nodes) == 2]
     if len(unset) != 1 or len(raced) != 1:
         return None
     ((key, nodes),) = raced
     (meant,) = unset
     words = words_of(meant) - words_of(key)
-    named = [each for each in nodes if words & words_of(each.name)]
+    named = [node for node in nodes if words & words_of(node.name)]
     return RacedOutput(key, named[0] if len(named) == 1 else nodes[-1], meant)

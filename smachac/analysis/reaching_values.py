@@ -86,10 +86,10 @@ class _Searches:
             sources = self.sources(flow.cell, after)
             alike = self.alike(flow)
             coming = [alike[vertex] for vertex in sources if vertex in alike] if sources else []
-            for each in coming if sources is not None else [flow]:
-                if each.before is None:
-                    return replace(clash, flow=_linked(each, after))
-                todo.append((each.before, (each, *after)))
+            for other in coming if sources is not None else [flow]:
+                if other.before is None:
+                    return replace(clash, flow=_linked(other, after))
+                todo.append((other.before, (other, *after)))
         return None
 
     def alike(self, flow: TypeFlow) -> dict[Vertex, TypeFlow]:
@@ -97,7 +97,7 @@ class _Searches:
         which = flow.cell, flow.mark
         if which not in self.flows:
             every = flow.cell.flows.get(flow.mark, [flow])
-            self.flows[which] = {_stop(each): each for each in reversed(every)}
+            self.flows[which] = {_stop(flow): flow for flow in reversed(every)}
         return self.flows[which]
 
     def sources(self, cell: Cell, after: tuple[TypeFlow, ...]) -> tuple[Vertex, ...] | None:
@@ -206,13 +206,13 @@ def _is_nullable(clash: Clash) -> bool:
 
 def _may_write_null(child: Node, key: str) -> bool:
     """Whether an output of a state that is the key of its container is declared as nullable."""
-    return any(each.type.name == "optional" for each in outputs_to(child, key))
+    return any(output.type.name == "optional" for output in outputs_to(child, key))
 
 
 def _linked(flow: TypeFlow, after: tuple[TypeFlow, ...]) -> TypeFlow:
     """The last of several flows, each with the one before it."""
-    for each in after:
-        flow = each if each.before is flow else replace(each, before=flow, first=flow.origin)
+    for other in after:
+        flow = other if other.before is flow else replace(other, before=flow, first=flow.origin)
     return flow
 
 

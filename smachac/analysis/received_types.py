@@ -29,17 +29,18 @@ def received_types(leaf: Leaf, found: Definitions) -> Mapping[str, Type]:
         if named is None or slots is None or not isinstance(slots.value.data, tuple):
             continue
         if any(
-            each.name == f"{role}_cb" and each.value.data is not None for each in leaf.variables
+            variable.name == f"{role}_cb" and variable.value.data is not None
+            for variable in leaf.variables
         ):
             continue
         kind: DefinitionKind = "action" if type_role == "action_type" else "srv"
         for name in slots.value.data:
             fields = [
-                each.part(role).field(name)
-                for each in found.get((kind, type_text(named)), ())
+                definition.part(role).field(name)
+                for definition in found.get((kind, type_text(named)), ())
                 if isinstance(name, str)
             ]
-            held = {userdata_type(each.type) for each in fields if each is not None}
-            if len(held) == 1 and None not in fields and {each.name for each in held} <= SCALARS:
+            held = {userdata_type(field.type) for field in fields if field is not None}
+            if len(held) == 1 and None not in fields and {type_.name for type_ in held} <= SCALARS:
                 types[str(name)] = held.pop()
     return types

@@ -200,7 +200,7 @@ class _Search:
                 found[here] = (vertex, step.outcome, first)
                 if here == goal:
                     break
-                todo += [(here, each, False) for each in self.steps[here]]
+                todo += [(here, step, False) for step in self.steps[here]]
         self.visits.number += len(todo)
         return found
 
@@ -220,7 +220,7 @@ class _Search:
         retried = self._retried()
         ways: list[tuple[Kind, _Starts, Vertex]] = []
         if retried or name not in self.first:
-            last = [each for each in self.steps_from(name) if each[1].outcome == outcome]
+            last = [step for step in self.steps_from(name) if step[1].outcome == outcome]
             for header in (*self.headers, START):
                 ways.append((kind, last, header))
         if kind == "spent" and self._only_counts():
@@ -284,7 +284,7 @@ class _Search:
         for name in sorted(self.loop):
             child = self.scope.children[name]
             inside = [step for step in self.steps[name] if step.target in self.loop]
-            if child is not self.test.leaf and any(fails(child, each.outcome) for each in inside):
+            if child is not self.test.leaf and any(fails(child, step.outcome) for step in inside):
                 out = (step for step in self.steps[name] if step.target not in self.loop)
                 found += [(name, step) for step in out if not fails(child, step.outcome)]
         return found

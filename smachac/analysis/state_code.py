@@ -146,7 +146,7 @@ def _argument_faults(machine: Machine, library: UserCode) -> Iterator[StateFault
 def _unfit_arguments(
     leaf: Leaf, type_: StateType, parameters: Sequence[Parameter], given: Set[str]
 ) -> Iterator[tuple[ClassFault, tuple[Related, ...]]]:
-    known = {each.word.text: each for each in parameters}
+    known = {parameter.word.text: parameter for parameter in parameters}
     set_ = {one.name: one for one in leaf.variables}
     passed = {*set_, *type_.variables, *given}
     guess = guesser([name for name in known if name not in passed])
@@ -186,7 +186,7 @@ def _with_set_variable(fault: ClassFault, leaf: Leaf) -> ClassFault:
     """A fault of a parameter that has another name than a variable: the help is to rename the
     parameter if the script sets the variable."""
     variable, near = fault.variable, fault.near
-    if near is None or all(each.name != variable for each in leaf.variables):
+    if near is None or all(other.name != variable for other in leaf.variables):
         return fault
     parameter = near if variable == fault.name.text else fault.name.text
     renamed = f"rename the parameter `{parameter}` to `{variable}`, which the script sets"
@@ -200,18 +200,18 @@ def _reader(machine: Machine, type_: StateType, fault: ClassFault) -> Related | 
     for _, container in walk(machine.root):
         if not isinstance(container, StateMachine):
             continue
-        states = {each.name: each for each in container.children}
+        states = {child.name: child for child in container.children}
         setters: Counter[str] | None = None
         for leaf in container.children:
             if not isinstance(leaf, Leaf) or leaf.type != type_.name:
                 continue
             outer = remapping(leaf)[key]
-            targets = {each.outcome: each.target for each in leaf.transitions}
+            targets = {transition.outcome: transition.target for transition in leaf.transitions}
             reader = states.get(targets.get(outcome or "", ""))
             if not isinstance(reader, Leaf) or reader is leaf:
                 continue
             setters = _setters(container) if setters is None else setters
-            read = any(each.type.name != "optional" for each in inputs_from(reader, outer))
+            read = any(input_.type.name != "optional" for input_ in inputs_from(reader, outer))
             if read and setters[outer] == 1:
                 text = f"`{reader.name}` reads `{outer}` after `{leaf.name}` ends with `{outcome}`"
                 return Related(span=reader.span, message=text)
@@ -220,8 +220,8 @@ def _reader(machine: Machine, type_: StateType, fault: ClassFault) -> Related | 
 
 def _setters(container: StateMachine) -> Counter[str]:
     """How many places give each key of a container a value: its inputs, presets and states."""
-    found = Counter(each.name for each in container.inputs)
-    found.update(each.key for each in container.userdata)
+    found = Counter(input_.name for input_ in container.inputs)
+    found.update(preset.key for preset in container.userdata)
     for child in container.children:
         found.update({*outer_outputs(child)})
     return found
@@ -235,7 +235,7 @@ def _lists(type_: StateType) -> str:
         ("output_keys", type_.output_keys),
     )
     return ", ".join(
-        f"{field}=[{', '.join([*(json.dumps(each.name) for each in named), *more])}]"
+        f"{field}=[{', '.join([*(json.dumps(item.name) for item in named), *more])}]"
         for field, named in parts
         for more in (["..."] if field in type_.given else [],)
         if named or more or field == "outcomes"

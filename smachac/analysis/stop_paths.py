@@ -335,7 +335,9 @@ def stoppable_branches(
         if isinstance(container, Concurrence) and container.join == "any":
             branches = [f"{path}/{child.name}" for child in container.children]
             ending = [branch for branch in branches if known.unstopped[branch]]
-            found.update((each, container) for each in branches if ending and ending != [each])
+            found.update(
+                (branch, container) for branch in branches if ending and ending != [branch]
+            )
     return found
 
 

@@ -75,7 +75,7 @@ class Routes:
 
     def _ends_after(self, event: Event) -> Iterator[Event]:
         """The ends of containers that can follow an event at once."""
-        return (each for each in self.after(event) if each[1])
+        return (pair for pair in self.after(event) if pair[1])
 
 
 def _possible_edges(known: Endings, path: str, container: Container) -> Iterator[Edge]:
@@ -99,24 +99,24 @@ def _results(
     """The results of a concurrence that are possible when a child ends with an outcome: without a
     preempt request, else with one; all results where that cannot be decided."""
     unstopped = [
-        each for each, first in unstopped_spaces(concurrence, *ends) if first in ("", child)
+        entry for entry, first in unstopped_spaces(concurrence, *ends) if first in ("", child)
     ]
-    spaces = [each for each in unstopped if outcome in each[child]] or [
+    spaces = [entry for entry in unstopped if outcome in entry[child]] or [
         space(concurrence, ends.ever)
     ]
     given = {child: outcome}
     found: dict[str, None] = {}
     try:
-        for each in spaces:
+        for entry in spaces:
             for number, rule in enumerate(concurrence.written):
                 both = {**given, **concurrence.rules.conditions[number]}
                 wanted = both[child] == outcome
                 if (
                     wanted
-                    and concurrence.rules.find(each, both, concurrence.larger(number)) is not None
+                    and concurrence.rules.find(entry, both, concurrence.larger(number)) is not None
                 ):
                     found[rule.outcome] = None
-            if concurrence.rules.find(each, given, concurrence.rules.all) is not None:
+            if concurrence.rules.find(entry, given, concurrence.rules.all) is not None:
                 found[concurrence.node.default_outcome] = None
     except UndecidedError:
         found = {}

@@ -157,9 +157,9 @@ class _Inference:
                 scope = self.container(path, node, around)
                 stack.extend(
                     [
-                        (f"{path}/{each.name}", each, scope)
-                        for each in node.children[::-1]
-                        if not isinstance(each, Leaf) or _has_types(each)
+                        (f"{path}/{child.name}", child, scope)
+                        for child in node.children[::-1]
+                        if not isinstance(child, Leaf) or _has_types(child)
                     ]
                 )
             elif around is not None:
@@ -277,8 +277,8 @@ class _Inference:
             elif isinstance(items, tuple):
                 is_key = len(items) == 1 and isinstance(items[0], str)
                 is_key = is_key and items[0] in self.preset_lists
-                for each in () if is_key else items:  # SM305 or SM306: the key is meant
-                    self.literal(item, each, span)
+                for value in () if is_key else items:  # SM305 or SM306: the key is meant
+                    self.literal(item, value, span)
             else:
                 self.unknown(item)
 
@@ -337,7 +337,7 @@ class _Inference:
             cell.flows[mark].append(flow)
             return
         if len(cell.flows) >= MOST_FLOWS:
-            cell.kinds = cell.kinds or {_kind(each[0]) for each in cell.flows.values()}
+            cell.kinds = cell.kinds or {_kind(flow[0]) for flow in cell.flows.values()}
             if _kind(flow) in cell.kinds:
                 return
             cell.kinds.add(_kind(flow))

@@ -180,7 +180,7 @@ def _misfit_lists(given: Type, wanted: Type) -> Misfit | None:
         return Misfit("length", given, wanted)
     item = inside(wanted)
     if given.name == "tuple":
-        return _first(misfit(each, item) for each in dict.fromkeys(items(given)))
+        return _first(misfit(fromkey, item) for fromkey in dict.fromkeys(items(given)))
     return misfit(inside(given), item)
 
 
@@ -220,7 +220,7 @@ MOST_CHOICES = 16
 
 def constants(choices: Iterable[int | str]) -> Type:
     """One of these constants."""
-    found = tuple(sorted(set(choices), key=lambda each: (str(each), isinstance(each, str))))
+    found = tuple(sorted(set(choices), key=lambda choice: (str(choice), isinstance(choice, str))))
     type_ = Type("literal", found)
     return type_ if len(found) <= MOST_CHOICES else plain(type_)
 
@@ -235,7 +235,7 @@ def join(one: Type, other: Type) -> Type:
         return optional(other if one == NONE else one)
     if "optional" in (one.name, other.name):
         return optional(join(present(one), present(other)))
-    match sorted((one, other), key=lambda each: each.name):
+    match sorted((one, other), key=lambda type_: type_.name):
         case [Type("literal") | Type("one_of"), Type("literal") | Type("one_of")]:
             return _join_choices(one, other)
         case [Type("int" | "float"), Type("int" | "float")]:
@@ -266,11 +266,11 @@ def join(one: Type, other: Type) -> Type:
 def _join_choices(one: Type, other: Type) -> Type:
     both = [*one.args, *other.args]
     if one.name == other.name == "literal":
-        return constants(each for each in both if isinstance(each, int | str))
+        return constants(value for value in both if isinstance(value, int | str))
     for low, high in ((one, other), (other, one)):
         if set(low.args) <= set(high.args) and high.name == "one_of":
             return high
-    choices = sorted({each for each in both if isinstance(each, int | str)}, key=str)
+    choices = sorted({value for value in both if isinstance(value, int | str)}, key=str)
     return Type("one_of", tuple(choices))
 
 
@@ -288,7 +288,7 @@ def _join_fields(one: Type, other: Type) -> Type:
 
 
 def _join_lists(one: Type, other: Type) -> Type:
-    item = joined(item_of(each) for each in (one, other) if length_of(each) != 0)
+    item = joined(item_of(type_) for type_ in (one, other) if length_of(type_) != 0)
     size = length_of(one)
     if size is not None and size == length_of(other):
         return Type("array", (item, size))
@@ -323,7 +323,7 @@ def item_of(type_: Type) -> Type:
         case "dict":
             return STR if type_.args else ANY  # keys of a bare dict may be of any type
         case "literal" | "one_of":
-            return STR if all(isinstance(each, str) for each in type_.args) else ANY
+            return STR if all(isinstance(argument, str) for argument in type_.args) else ANY
     return ANY
 
 
@@ -336,7 +336,7 @@ def plain(type_: Type) -> Type:
     """A literal as the type that a script would write for it, one level deep."""
     match type_.name:
         case "literal" | "one_of":
-            kinds = {STR if isinstance(each, str) else INT for each in type_.args}
+            kinds = {STR if isinstance(argument, str) else INT for argument in type_.args}
             return kinds.pop() if len(kinds) == 1 else ANY
         case "tuple" if type_.args:
             return Type("array", (joined(items(type_)), len(type_.args)))
@@ -372,7 +372,7 @@ def meet(one: Type, other: Type) -> Type:
             unit = unit_of(one) or unit_of(other)
             return Type(name, (unit,) if unit else ())
         case "one_of", "one_of":
-            common = tuple(each for each in one.args if each in other.args)
+            common = tuple(argument for argument in one.args if argument in other.args)
             return Type("one_of", common) if common else ANY
         case "list" | "array", "list" | "array" if _same_size(one, other):
             size = length_of(one) if length_of(one) is not None else length_of(other)

@@ -63,7 +63,7 @@ def other_units(unit: str) -> tuple[str, ...]:
     """The other units that measure the same as a unit, those of the table above, in its order."""
     found = _IN_BASE_UNIT.get(unit)
     return tuple(
-        each
-        for each, (base, _) in _IN_BASE_UNIT.items()
-        if found is not None and base == found[0] and each != unit
+        name
+        for name, (base, _) in _IN_BASE_UNIT.items()
+        if found is not None and base == found[0] and name != unit
     )

@@ -209,9 +209,9 @@ class Searches:
             return
         found = self._search(scope, missing.key)
         unset = [
-            each.vertex
-            for each in found
-            if each.state == "unset" and missing.key in scope.reads.get(each.vertex, ())
+            reached.vertex
+            for reached in found
+            if reached.state == "unset" and missing.key in scope.reads.get(reached.vertex, ())
         ]
         for vertex in unset[:1] if nothing_sets else unset:
             inner, inside, always = self._inside(scope, vertex, missing.key)
@@ -220,12 +220,14 @@ class Searches:
                 always and Reached(vertex, "set") not in found,
                 inner,
                 tuple(way_to(scope.path, found, Reached(vertex, "unset")) + inside),
-                tuple(each for each in missing.vertices if each != vertex) if nothing_sets else (),
+                tuple(value for value in missing.vertices if value != vertex)
+                if nothing_sets
+                else (),
             )
 
     def _search(self, scope: UserdataScope, key: str) -> Search:
         found = search(self.flow, scope, key, ["unset"], stops=True)
-        read = sum(len(scope.reads.get(each.vertex, ())) for each in found)
+        read = sum(len(scope.reads.get(reached.vertex, ())) for reached in found)
         self.left -= len(scope.reads) + len(found) + read // 10  # a look at a key is a short step
         return found
 
@@ -241,9 +243,9 @@ class Searches:
             key = next(own for own, to in scope.inputs.items() if to == key and own in scope.needed)
             found = self._search(scope, key)
             vertex = next(
-                each.vertex
-                for each in found
-                if each.state == "unset" and key in scope.reads.get(each.vertex, ())
+                reached.vertex
+                for reached in found
+                if reached.state == "unset" and key in scope.reads.get(reached.vertex, ())
             )
             always = always and Reached(vertex, "set") not in found
             if not scope.container.sugar:  # its states are not in the script

@@ -65,7 +65,7 @@ def likely(edits: Iterable[Edit], operator: str) -> tuple[Repair, ...]:
 
 def adding_outcome(node: Node, outcome: str) -> tuple[Repair, ...]:
     """The repair that adds an outcome to those that a state lists, where its place is certain."""
-    here = [each.span for each in node.outcomes if each.span.source is node.span.source]
+    here = [outcome.span for outcome in node.outcomes if outcome.span.source is node.span.source]
     after = sorted({span for span in here if span.start > node.span.start})
     while after and after[0].source.text[: after[0].start].rstrip()[-1:] not in ("[", "-"):
         del after[0]  # the name is not the first one of a list
@@ -83,8 +83,8 @@ def listing(nodes: Iterable[Node], part: KeyList, key: str) -> str:
     """The help that adds a key to a list of keys of some states: the whole list where it is short
     and written in brackets, or where there is none."""
     every = [*nodes]
-    names = listed(name_in_script(each) for each in every)
-    shown = {_whole_list(each, part, key) for each in every}
+    names = listed(name_in_script(state) for state in every)
+    shown = {_whole_list(state, part, key) for state in every}
     if len(shown) == 1 and (whole := shown.pop()):
         return f"write `{notation.names(every[0], part, whole)}` in {names}"
     return f"add `{key}` to the `{part}` of {names}"
@@ -96,22 +96,22 @@ def _whole_list(node: Node, part: KeyList, key: str) -> tuple[str, ...]:
     if not known:
         return (key,)
     text = node.span.source.text
-    if len(known) > MOST_LISTED or any(each.span.source is not node.span.source for each in known):
+    if len(known) > MOST_LISTED or any(key.span.source is not node.span.source for key in known):
         return ()
     first, last = known[0].span, known[-1].span
     in_brackets = (
         text[: first.start].rstrip().endswith("[") and text[last.end :].lstrip()[:1] == "]"
     )
     between = text[first.start : last.end]
-    names = [each.name for each in known]
-    written = [each.strip().strip("'\"") for each in between.split(",")]
+    names = [key.name for key in known]
+    written = [part.strip().strip("'\"") for part in between.split(",")]
     return (*names, key) if in_brackets and written == names and key not in names else ()
 
 
 def _with_key(node: Node, known: Iterable[Key], part: str, key: str) -> tuple[Edit, ...]:
     if not is_plain(key):
         return ()
-    spans = (each.span for each in known if each.span.source is node.span.source)
+    spans = (key.span for key in known if key.span.source is node.span.source)
     last = max(spans, key=lambda span: span.start, default=None)
     return _listed(last, key) if last is not None else with_field(node.span, f"{part}: [{key}]")
 

@@ -51,10 +51,10 @@ def names_apart(paths: Sequence[str]) -> list[str]:
     shown = {path: path.rpartition("/")[2] for path in paths}
     for path in shown:
         parts = path.split("/")
-        same = [each for each in shown if each != path and each.endswith(f"/{parts[-1]}")]
+        same = [text for text in shown if text != path and text.endswith(f"/{parts[-1]}")]
         count = 1
-        while count < len(parts) and any(each.split("/")[-count:] == parts[-count:]
-                                         for each in same):  # fmt: skip
+        while count < len(parts) and any(text.split("/")[-count:] == parts[-count:]
+                                         for text in same):  # fmt: skip
             count += 1
         shown[path] = "/".join(parts[-count:])
     return [shown[path] for path in paths]

@@ -37,7 +37,10 @@ def in_words(type_: Type) -> str:
     """A type as part of a message; literals as in the script."""
     match type_.name:
         case "literal":
-            texts = (f'"{each}"' if isinstance(each, str) else str(each) for each in type_.args)
+            texts = (
+                f'"{argument}"' if isinstance(argument, str) else str(argument)
+                for argument in type_.args
+            )
             return " or ".join(f"`{text}`" for text in texts)
         case "none":
             return "nothing (`null`)"
@@ -50,7 +53,7 @@ def in_words(type_: Type) -> str:
 def named(type_: Type, aliases: Mapping[str, str]) -> str:
     """A type as text, with the names that the script gives to the records in it."""
     text = str(type_)
-    for name, alias in sorted(aliases.items(), key=lambda each: -len(each[1])):
+    for name, alias in sorted(aliases.items(), key=lambda pair: -len(pair[1])):
         record = parse_type(alias)
         if record is not None and record.name == "record":
             text = text.replace(str(record), name)

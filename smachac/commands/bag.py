@@ -89,8 +89,10 @@ def _messages(path: Path, notes: list[str]) -> Messages:
     found: Messages = {}
     try:
         with Reader(path) as reader:
-            wanted = [each for each in reader.connections if _has_statuses(each.topic)]
-            found = {each.topic: [] for each in wanted}
+            wanted = [
+                connection for connection in reader.connections if _has_statuses(connection.topic)
+            ]
+            found = {connection.topic: [] for connection in wanted}
             for connection, _, data in reader.messages(wanted) if wanted else ():
                 found[connection.topic].append((connection.msgtype, data))
     except Exception as error:  # of rosbags and its storages
@@ -116,7 +118,7 @@ def _messages(path: Path, notes: list[str]) -> Messages:
 def _messages_of_files(folder: Path, reason: str, notes: list[str]) -> Messages:
     """The messages in the files of a folder whose metadata.yaml cannot be used."""
     files = sorted(
-        (each for each in folder.iterdir() if each.is_file() and is_bag(each)),
+        (path for path in folder.iterdir() if path.is_file() and is_bag(path)),
         key=lambda file: [part.zfill(20) for part in re.split(r"(\d+)", file.name)],
     )
     is_missing = not (folder / "metadata.yaml").is_file()

@@ -197,8 +197,8 @@ def _check_once(
         notes += [f"{number} fixable with --fix"] if number else []
     severe = {Severity.ERROR, Severity.WARNING} if arguments.strict else {Severity.ERROR}
     failing = {
-        name: [item for item in each if item.severity in severe]
-        for name, each in found.reports.items()
+        name: [item for item in report if item.severity in severe]
+        for name, report in found.reports.items()
     }
     if sys.stdout.isatty():
         notes.append(f"{time.perf_counter() - started:.2f} s")

@@ -42,5 +42,7 @@ def completion_command(arguments: Namespace) -> int:
 
 def _commands(parser: argparse.ArgumentParser) -> list[argparse.ArgumentParser]:
     """The parsers of all commands."""
-    (actions,) = (each for each in parser._actions if isinstance(each, argparse._SubParsersAction))
+    (actions,) = (
+        action for action in parser._actions if isinstance(action, argparse._SubParsersAction)
+    )
     return list(actions.choices.values())

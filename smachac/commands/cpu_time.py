@@ -37,7 +37,7 @@ def limited_time(seconds: int) -> Iterator[None]:
         yield
         return
     soft, hard = resource.getrlimit(resource.RLIMIT_CPU)
-    known = [each for each in (soft, hard) if each != resource.RLIM_INFINITY]
+    known = [number for number in (soft, hard) if number != resource.RLIM_INFINITY]
     before = signal.signal(signal.SIGXCPU, _exceeded)
     limit = min([*known, int(time.process_time()) + seconds + 1])
     resource.setrlimit(resource.RLIMIT_CPU, (limit, hard))

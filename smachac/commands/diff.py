@@ -79,7 +79,7 @@ def diff_command(arguments: Namespace) -> int:
         return usage(str(error))
     except MachineError as error:
         return usage(str(error), error.word, error.known)
-    for analysis in (each for pair in pairs for each in pair):
+    for analysis in (analysis for pair in pairs for analysis in pair):
         if analysis is not None and analysis.machine is None:
             print_report(analysis.report, arguments, sys.stderr)
     return _put(arguments, pairs)
@@ -181,7 +181,7 @@ def _checked(
         else:
             with contextlib.suppress(NothingFoundError):
                 inside = scripts_of([path], disk, python)
-                found += [each for each in inside if os.path.lexists(each)]
+                found += [path for path in inside if os.path.lexists(path)]
     found = list(dict.fromkeys(found))
     scripts = [path for path in found if not is_python(path)]
     analyses = check_scripts(scripts, disk, arguments.scripts, arguments.templates).analyses
@@ -195,7 +195,7 @@ def _put(arguments: Namespace, pairs: Sequence[Pair]) -> int:
     from smachac.diff.report import render_json, render_markdown, render_text
 
     found = [compare(before, after) for before, after in pairs]
-    different = [each for each in found if not each.equal]
+    different = [comparison for comparison in found if not comparison.equal]
     match arguments.format:
         case "html":
             return _put_page(list(zip(pairs, found, strict=True)))
@@ -226,13 +226,15 @@ def _put_page(found: Sequence[tuple[Pair, Comparison]]) -> int:
     """Print the page of one script; the exit code."""
     from smachac.diff.page import render_difference_page
 
-    different = [each for each in found if not each[1].equal] or found
+    different = [pair for pair in found if not pair[1].equal] or found
     if len(different) > 1:
         return usage(
             "--format html draws one script: name it, and with --machine one of several machines"
         )
     ((pair, comparison),) = different
-    machine = next((each.machine for each in reversed(pair) if each and each.machine), None)
+    machine = next(
+        (analysis.machine for analysis in reversed(pair) if analysis and analysis.machine), None
+    )
     if machine is None or comparison.unread:
         return DIFFERENT  # its errors are printed
     sys.stdout.write(render_difference_page(comparison, machine))

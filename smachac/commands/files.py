@@ -179,7 +179,7 @@ def put_changes(
 
     words = {
         source.name: "created" if path in new else done
-        for path, source in sorted(sources.items(), key=lambda each: each[1].name)
+        for path, source in sorted(sources.items(), key=lambda pair: pair[1].name)
     }
     if arguments.diff:
         sys.stdout.writelines(differences(texts, sources))

@@ -22,7 +22,7 @@ def limited_memory(megabytes: int) -> Iterator[None]:
         yield
         return
     soft, hard = resource.getrlimit(resource.RLIMIT_AS)
-    known = [each for each in (soft, hard) if each != resource.RLIM_INFINITY]
+    known = [number for number in (soft, hard) if number != resource.RLIM_INFINITY]
     wanted = [megabytes * 1_000_000] if megabytes else []
     limit = min([*known, *wanted], default=resource.RLIM_INFINITY)
     resource.setrlimit(resource.RLIMIT_AS, (limit, hard))

@@ -143,8 +143,8 @@ def _files(
             around = [] if called else [path]
             reports[path] = [
                 item
-                for each in around
-                for item in _report(each, text, scripts, templates, disk, arguments, alone=True)
+                for path in around
+                for item in _report(path, text, scripts, templates, disk, arguments, alone=True)
             ]
     found = in_order(item for report in reports.values() for item in report)
     for path, text in texts:

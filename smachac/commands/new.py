@@ -69,7 +69,7 @@ def new_command(arguments: Namespace) -> int:
     folder = Path(words[0])
     if not words[0].strip() or not words[0].isprintable():
         return usage(f"`{words[0]}` is not a name for a folder")
-    schemas = {each: schema_text(each) for each in ("script", "interface", "project")}
+    schemas = {name: schema_text(name) for name in ("script", "interface", "project")}
     return _put(folder, project(Path(os.path.realpath(folder)).name, schemas), arguments)
 
 

@@ -169,7 +169,9 @@ def perform(arguments: Namespace, change: Callable[[EditedScript], object]) -> i
         except HasErrorsError:
             if right := swapped_arguments(arguments):
                 return usage(right)
-            errors = [each for each in script.analysis.report if has_errors([each])]
+            errors = [
+                diagnostic for diagnostic in script.analysis.report if has_errors([diagnostic])
+            ]
             print_report(errors, arguments, sys.stderr)
             if script.analysis.machine is not None:
                 print("nothing was changed: fix the errors of the script first", file=sys.stderr)

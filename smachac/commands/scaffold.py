@@ -157,13 +157,13 @@ def _cpp_stub(type_: StateType) -> str:
         return f"{text}{identifier(name)}" if text.endswith("&") else f"{text} {identifier(name)}"
 
     outcomes = [*map(identifier, _outcomes(type_))]
-    variables = [(name, each.type) for name, each in type_.variables.items()]
+    variables = [(name, variable.type) for name, variable in type_.variables.items()]
     given = [
         *(["In in"] if type_.input_keys else []),
         *(["Out out"] if type_.output_keys else []),
         *(["smachac::Stop &stop"] if stops(type_) else []),
     ]
-    members = [f"  {cpp_type(each)} {identifier(name)}_;" for name, each in variables]
+    members = [f"  {cpp_type(type_)} {identifier(name)}_;" for name, type_ in variables]
     lines = [
         f"// {_summary(type_)}",
         "#pragma once",
@@ -191,11 +191,11 @@ def _cpp_stub(type_: StateType) -> str:
         "",
     ]
     if variables:
-        taken = ", ".join(parameter(name, each) for name, each in variables)
+        taken = ", ".join(parameter(name, type_) for name, type_ in variables)
         kept = ", ".join(f"{identifier(name)}_({identifier(name)})" for name, _ in variables)
         explicit = "explicit " if len(variables) == 1 else ""
         lines += [f"  {explicit}{type_.name}({taken}) : {kept} {{}}", ""]
-    unused = [f"    (void){each.split()[-1].strip('&')};" for each in given if "out" not in each]
+    unused = [f"    (void){text.split()[-1].strip('&')};" for text in given if "out" not in text]
     sets = [f"    out.{identifier(key.name)} = {cpp_type(key.type)}{{}};"
             for key in type_.output_keys]  # fmt: skip
     lines += [
@@ -318,7 +318,7 @@ def project(name: str, schemas: Mapping[str, str]) -> Files:
         f"{MODULES}/greet.py": GREET_CODE,
         ".pre-commit-config.yaml": HOOKS,
         "README.md": READ_ME.format(name=name, modules=MODULES),
-        **{f"schemas/{each}.json": text for each, text in schemas.items()},
+        **{f"schemas/{name}.json": text for name, text in schemas.items()},
     }
 
 

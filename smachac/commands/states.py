@@ -41,13 +41,13 @@ def states_command(arguments: Namespace) -> int:
     from smachac.report.terminal import visible
 
     known = _known_types(arguments.templates)
-    names = [each.type.name for each in known]
+    names = [other.type.name for other in known]
     if arguments.name is not None and arguments.name not in names:
         return usage(f"there is no state type `{arguments.name}`", arguments.name, names)
-    some = [each for each in known if arguments.name in (None, each.type.name)]
+    some = [other for other in known if arguments.name in (None, other.type.name)]
     match arguments.format:
         case "json":
-            rows = [shown_types.type_json(each) for each in some]
+            rows = [shown_types.type_json(known) for known in some]
             text = json_text(rows if arguments.name is None else rows[0])
         case "md":
             text = "\n".join(map(shown_types.type_markdown, some))
@@ -74,12 +74,12 @@ def _known_types(templates: list[Path]) -> list[Known]:
     targets = [target for name in target_names() if (target := load_target(name)) is not None]
 
     def row(type_: StateType, place: str) -> Known:
-        able = [each.name for each in targets if each.has_code(type_, library)]
-        others = set(languages(type_)) - {each.name for each in targets}
+        able = [target.name for target in targets if target.has_code(type_, library)]
+        others = set(languages(type_)) - {target.name for target in targets}
         return Known(type_, place, tuple(sorted({*able, *others})))
 
     known = []
     for type_, own in usable_types(library):
         known.append(row(type_, "of this project" if own else "built-in"))
     known += [row(container_type(name), "built-in") for name in CONTAINERS.values()]
-    return sorted(known, key=lambda each: (each.place == "built-in", each.type.name))
+    return sorted(known, key=lambda known: (known.place == "built-in", known.type.name))

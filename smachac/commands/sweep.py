@@ -225,7 +225,7 @@ def _prepared(arguments: Namespace) -> tuple[Checked, Task, dict[str, str]] | in
     machine, library = analysis.checked, analysis.library
     if machine is None or library is None or (arguments.mock is None and not files):
         return FINDINGS
-    if arguments.faults and not any(each.simulation for each in machine.state_types.values()):
+    if arguments.faults and not any(type_.simulation for type_ in machine.state_types.values()):
         return usage(NO_ARM)
     if arguments.mock is None and is_node(machine, library, library.ros):
         return usage("this script is a ROS node: --mock plays a scenario")
@@ -432,7 +432,11 @@ def _write(
     differences = compare(before, summary) if before is not None and summary["runs"] else []
     match arguments.format:
         case "json":
-            more = {"differences": [each._asdict() for each in differences]} if before else {}
+            more = (
+                {"differences": [difference._asdict() for difference in differences]}
+                if before
+                else {}
+            )
             text = json_text({**summary, **more})
         case "html":
             text = summary_html(summary, _graph(machine, totals), differences)

@@ -226,7 +226,7 @@ def _judged_bag(path: Path, machine: Machine, taken: Coverage) -> list[JudgedTra
         raise UnreadableTraceError(path, str(error)) from None
     for note in notes:
         print(f"note: {path}: {note}", file=sys.stderr)
-    roots = {topic: {each.path.partition("/")[0] for each in found[topic]} for topic in found}
+    roots = {topic: {status.path.partition("/")[0] for status in found[topic]} for topic in found}
     own = [topic for topic in found if not roots[topic] or machine.root.name in roots[topic]]
     if not own:
         names = listed(f"/{root}" for root in set().union(*roots.values()))

@@ -360,8 +360,8 @@ def _unknown_place(places: Iterable[str], picture: Picture) -> str:
 
     model = picture.model
     nodes = model["nodes"]
-    known = {each.get("shown", each["path"]) for each in nodes} | {each["path"] for each in nodes}
-    place = next((each for each in places if each not in known), "")
+    known = {node.get("shown", node["path"]) for node in nodes} | {node["path"] for node in nodes}
+    place = next((place for place in places if place not in known), "")
     machine = place.partition("/")[0]
     if not place:
         return ""
@@ -390,7 +390,7 @@ class _NodeRun:
         self._statuses.use(self._picture.machine)
         events = self._statuses.events(reports)
         publish(self._feed, events)
-        self._known |= dict.fromkeys(each["path"] for each in events)
+        self._known |= dict.fromkeys(event["path"] for event in events)
         unknown = _unknown_place(self._known, self._picture)
         if unknown and not self._unknown:
             print(f"{self._topic.topic}: {unknown}", file=sys.stderr)

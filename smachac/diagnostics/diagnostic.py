@@ -253,8 +253,8 @@ def grouped(report: Report) -> Report:
 def _as_one(items: Report) -> Diagnostic:
     first, others = items[0].finding, [item.finding for item in items[1:]]
     around, _, _ = (first.node or "").rpartition("/")
-    names = listed((each.node or "").rpartition("/")[2] for each in others)
-    shown = (Related(span=each.span, message="the same here") for each in others[:MOST_RELATED])
+    names = listed((other.node or "").rpartition("/")[2] for other in others)
+    shown = (Related(span=other.span, message="the same here") for other in others[:MOST_RELATED])
     finding = replace(
         first,
         message=f"{first.message}; the same holds for {names}",
@@ -299,7 +299,7 @@ def did_you_mean_file(name: str, candidates: Iterable[str]) -> str | None:
     `.yml` are not compared, because files of one kind share theirs; a candidate with the same
     ending comes first."""
     stem, ending = _stem_and_ending(name)
-    parts = [(*_stem_and_ending(each), each) for each in candidates]
+    parts = [(*_stem_and_ending(candidate), candidate) for candidate in candidates]
     parts.sort(key=lambda part: part[1] != ending)
     by_stem = {part[0]: part[2] for part in reversed(parts)}
     near = stem if stem in by_stem else _nearest(stem, tuple(by_stem))

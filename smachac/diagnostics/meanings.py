@@ -82,7 +82,7 @@ def by_words(word: str, names: Sequence[str]) -> str | None:
     for name in names:
         own = _words(name)
         alike = [
-            each not in GENERAL and any(_are_alike(each, other) for other in own) for each in wanted
+            text not in GENERAL and any(_are_alike(text, other) for other in own) for text in wanted
         ]
         if any(alike):
             rank = (alike[-1], sum(alike), -len(own))

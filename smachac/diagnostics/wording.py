@@ -53,5 +53,5 @@ def both(names: Iterable[str]) -> str:
 
 def either(choices: Iterable[str]) -> str:
     """Texts in backticks as alternatives, in their order: `a` or `b`, or `a`, `b` or `c`."""
-    *others, last = [f"`{each}`" for each in choices]
+    *others, last = [f"`{choice}`" for choice in choices]
     return f"{', '.join(others)} or {last}" if others else last

@@ -67,7 +67,7 @@ class Comparison:
 
 def compare(before: Analysis | None, after: Analysis | None) -> Comparison:
     """Compare two analyses; None for a script that does not exist."""
-    unread = any(each is not None and each.machine is None for each in (before, after))
+    unread = any(analysis is not None and analysis.machine is None for analysis in (before, after))
     old, new = ({}, {}) if unread else (_states(before), _states(after))
     pairs = corresponding(old, new) if old and new else {}
     added, removed, same = _findings(before, after, pairs)
@@ -163,8 +163,14 @@ def _findings(
 ) -> tuple[Report, Report, int]:
     """The findings that are new, those that are gone, and the number of those in both."""
     words = renamed_words(pairs)
-    old = [(_mark(each, before, words), each) for each in before.report] if before else []
-    new = [(_mark(each, after, {}), each) for each in after.report] if after else []
+    old = (
+        [(_mark(diagnostic, before, words), diagnostic) for diagnostic in before.report]
+        if before
+        else []
+    )
+    new = (
+        [(_mark(diagnostic, after, {}), diagnostic) for diagnostic in after.report] if after else []
+    )
     added, removed = _left(new, old), _left(old, new)
     return added, removed, len(new) - len(added)
 
@@ -175,11 +181,11 @@ def _left(
     """The findings that the other report does not have, or has less often."""
     rest = Counter(mark for mark, _ in others)
     found = []
-    for mark, each in these:
+    for mark, diagnostic in these:
         if rest[mark]:
             rest[mark] -= 1
         else:
-            found.append(each)
+            found.append(diagnostic)
     return found
 
 
@@ -189,6 +195,6 @@ def _mark(item: Diagnostic, analysis: Analysis | None, words: Mapping[str, str])
     file = item.span.source.name
     main = analysis is not None and file == analysis.script
     state = (item.finding.node or "").rpartition("/")[2]
-    arguments = tuple(words.get(each, each) for each in item.finding.arguments)
+    arguments = tuple(words.get(argument, argument) for argument in item.finding.arguments)
     name = "" if main else PurePath(file).name
     return item.code, item.severity, name, words.get(state, state), arguments

@@ -64,7 +64,7 @@ def _side(states: States, numbers: dict[Hashable, int]) -> _Side:
             for fact, value in state.facts.items()
             if fact[0] != "transition"
         )
-        inner = tuple((states[each].name, side.contents[each]) for each in state.children)
+        inner = tuple((states[child].name, side.contents[child]) for child in state.children)
         side.contents[path] = numbers.setdefault((facts, inner), len(numbers))
         for fact, value in state.facts.items():
             if fact[0] == "transition":
@@ -87,8 +87,8 @@ def _match_children(
             ones = left.unpaired(left.states[one].children)
             others = right.unpaired(right.states[other].children)
             if ones and others:
-                for each in _by_key(left, right, ones, others, key):
-                    pair(*each)
+                for item in _by_key(left, right, ones, others, key):
+                    pair(*item)
 
 
 def _by_key(
@@ -96,14 +96,14 @@ def _by_key(
 ) -> list[tuple[str, str]]:
     """The pairs of states with the same key that no other state has."""
     first, second = _unique(left, ones, key), _unique(right, others, key)
-    return [(path, second[each]) for each, path in first.items() if each in second]
+    return [(path, second[name]) for name, path in first.items() if name in second]
 
 
 def _unique(side: _Side, paths: Iterable[str], key: Key) -> dict[Hashable, str]:
     found: dict[Hashable, list[str]] = {}
     for path in paths:
         found.setdefault(key(side, path), []).append(path)
-    return {each: paths[0] for each, paths in found.items() if each is not None and len(paths) == 1}
+    return {name: paths[0] for name, paths in found.items() if name is not None and len(paths) == 1}
 
 
 def _name(side: _Side, path: str) -> Hashable:

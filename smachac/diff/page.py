@@ -52,10 +52,10 @@ def render_difference_page(comparison: Comparison, machine: Machine) -> str:
 
 def _changes(comparison: Comparison) -> Iterator[dict[str, str]]:
     """Each change in words, with the state of the picture that it is about."""
-    for each in comparison.changes:
-        gone = each.kind == REMOVED and each.what == "state"
-        path = comparison.place[each.path] if gone else each.path
-        yield {"path": path, "kind": each.kind, "text": change_text(each)}
+    for change in comparison.changes:
+        gone = change.kind == REMOVED and change.what == "state"
+        path = comparison.place[change.path] if gone else change.path
+        yield {"path": path, "kind": change.kind, "text": change_text(change)}
 
 
 def _findings(comparison: Comparison, root: str) -> Iterator[dict[str, str]]:
@@ -66,10 +66,10 @@ def _findings(comparison: Comparison, root: str) -> Iterator[dict[str, str]]:
     )
     reports = (ADDED, "+", comparison.added), (REMOVED, "-", comparison.removed)
     for (kind, sign, report), (place, states) in zip(reports, places, strict=True):
-        for each in report:
-            node = each.finding.node or ""
+        for diagnostic in report:
+            node = diagnostic.finding.node or ""
             path = place.get(node, node) if node in states else root
-            text = f"{sign} {each.severity.value}[{each.code}] {each.message}"
+            text = f"{sign} {diagnostic.severity.value}[{diagnostic.code}] {diagnostic.message}"
             yield {"path": path, "kind": kind, "text": text}
 
 
@@ -80,7 +80,7 @@ def _node(union: Union, path: str) -> dict[str, Any]:
     file, line = place_in_script(state.span)
     good = successes(outer)
     children = union.children[path]
-    first = [each for each in started(state) if each in children]
+    first = [text for text in started(state) if text in children]
     return {
         "path": path,
         "name": state.name,
@@ -120,8 +120,8 @@ def _form(union: Union, path: str) -> dict[str, Any]:
     if "rules" not in form:
         return form
     new, old = now.get("rules", []), was.get("rules", [])
-    rules = [{**each, "change": SAME if each in old else ADDED} for each in new]
-    rules += [{**each, "change": REMOVED} for each in old if each not in new]
+    rules = [{**item, "change": SAME if item in old else ADDED} for item in new]
+    rules += [{**item, "change": REMOVED} for item in old if item not in new]
     return {**form, "rules": rules}
 
 
@@ -135,8 +135,8 @@ def _form_in(state: State, place: Mapping[str, str]) -> dict[str, Any]:
 
 def _edges(comparison: Comparison) -> Iterator[dict[str, Any]]:
     """The edges of both machines, each with its change."""
-    before = {_key(each): each for each in _of_machine(comparison.before, comparison.place)}
-    after = {_key(each): each for each in _of_machine(comparison.after, {})}
+    before = {_key(entry): entry for entry in _of_machine(comparison.before, comparison.place)}
+    after = {_key(entry): entry for entry in _of_machine(comparison.after, {})}
     for key, edge in {**after, **before}.items():
         change = SAME if key in before and key in after else ADDED if key in after else REMOVED
         yield {**edge, "change": change}

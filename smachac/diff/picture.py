@@ -29,8 +29,8 @@ class Union:
         self.look = dict.fromkeys(comparison.after, ADDED)
         self.children = {path: list(state.children) for path, state in comparison.after.items()}
         self.place = comparison.place
-        self.before = {self.place[path]: each for path, each in comparison.before.items()}
-        changed = {each.path for each in comparison.changes if each.what != "transition"}
+        self.before = {self.place[path]: state for path, state in comparison.before.items()}
+        changed = {change.path for change in comparison.changes if change.what != "transition"}
         for other in comparison.pairs.values():
             self.look[other] = CHANGED if other in changed else SAME
         for path, state in comparison.before.items():
@@ -84,7 +84,7 @@ def render_picture(comparison: Comparison) -> str:
             continue
         lines.append(f'{pad}subgraph "cluster_{node_id(path)}" {{')
         lines += [f"{pad}  {line}" for line in _frame(union, path)]
-        todo += [f"{pad}}}", *((level + 1, each) for each in reversed(inside))]
+        todo += [f"{pad}}}", *((level + 1, text) for text in reversed(inside))]
     return "\n".join([*lines, *_edges(comparison, union), "}", ""])
 
 
@@ -143,7 +143,7 @@ def _edges(comparison: Comparison, union: Union) -> Iterator[str]:
         colour = INK if look == SAME else COLOURS[look][0]
         style = {"color": colour, "fontcolor": colour}
         style |= {REMOVED: {"style": "dashed"}, ADDED: {"penwidth": "2"}}.get(look, {})
-        text = "<BR/>".join(f" {html(each)} " for each in outcomes if each)
+        text = "<BR/>".join(f" {html(outcome)} " for outcome in outcomes if outcome)
         yield f'  "{source}" -> "{target}"{attributes(style, text)}'
 
 

@@ -29,7 +29,7 @@ def summary(comparison: Comparison) -> str:
         return "not compared, because it cannot be read"
     if not comparison.was or not comparison.name:
         return "new script" if comparison.name else "removed script"
-    counts = Counter((_noun(each), each.kind) for each in comparison.changes)
+    counts = Counter((_noun(change), change.kind) for change in comparison.changes)
     nouns = dict.fromkeys(["state", "transition", *(noun for noun, _ in counts)])
     parts = [
         f"{count} {noun}{'s' * (count != 1)} {kind}"
@@ -60,21 +60,25 @@ def title(comparison: Comparison) -> str:
 
 def render_text(found: Sequence[Comparison]) -> str:
     """The differences of scripts, one paragraph for each; those without any are left out."""
-    parts = ["\n".join(map(on_one_line, _lines(each))) for each in found if not each.equal]
+    parts = [
+        "\n".join(map(on_one_line, _lines(comparison)))
+        for comparison in found
+        if not comparison.equal
+    ]
     return "\n\n".join(parts) + "\n" if parts else ""
 
 
 def _lines(comparison: Comparison) -> Iterator[str]:
     yield f"{title(comparison)}: {summary(comparison)}"
-    for path, changes in groupby(comparison.changes, lambda each: each.path):
+    for path, changes in groupby(comparison.changes, lambda change: change.path):
         inside = list(changes)
         if inside[0].what == "state":
             yield f"  {_state_line(inside.pop(0))}"
         else:
             yield f"  ~ state {path}"
-        yield from (f"      {_fact_line(each)}" for each in inside)
+        yield from (f"      {_fact_line(change)}" for change in inside)
     for sign, report in (("+", comparison.added), ("-", comparison.removed)):
-        yield from (f"  {sign} {_finding(each)}" for each in report)
+        yield from (f"  {sign} {_finding(diagnostic)}" for diagnostic in report)
 
 
 def _state_line(change: Change) -> str:
@@ -106,7 +110,9 @@ def _finding(item: Diagnostic) -> str:
 
 def render_markdown(found: Sequence[Comparison]) -> str:
     """The differences as Markdown, for a comment on a pull request."""
-    parts = ["\n".join([*_markdown(each), ""]) for each in found if not each.equal]
+    parts = [
+        "\n".join([*_markdown(comparison), ""]) for comparison in found if not comparison.equal
+    ]
     return "\n".join(parts) if parts else "No difference in the state machines.\n"
 
 
@@ -121,7 +127,13 @@ def _markdown(comparison: Comparison) -> Iterator[str]:
         if report:
             yield ""
             rows = (
-                (each.severity.value, each.code, str(each.span), each.message) for each in report
+                (
+                    diagnostic.severity.value,
+                    diagnostic.code,
+                    str(diagnostic.span),
+                    diagnostic.message,
+                )
+                for diagnostic in report
             )
             yield from table((f"{heading} findings", "code", "place", "message"), rows)
 
@@ -139,7 +151,7 @@ def _fact(change: Change) -> str:
 
 def render_json(found: Sequence[Comparison]) -> str:
     """The differences of all scripts as JSON, also of those without any."""
-    return json_text({"version": VERSION, "scripts": [_data(each) for each in found]})
+    return json_text({"version": VERSION, "scripts": [_data(comparison) for comparison in found]})
 
 
 def _data(comparison: Comparison) -> dict[str, Any]:
@@ -148,7 +160,7 @@ def _data(comparison: Comparison) -> dict[str, Any]:
         "after": comparison.name or None,
         "equal": comparison.equal,
         "readable": not comparison.unread,
-        "changes": [_change_data(each) for each in comparison.changes],
+        "changes": [_change_data(change) for change in comparison.changes],
         "findings": {
             "added": _findings_data(comparison.added),
             "removed": _findings_data(comparison.removed),
@@ -171,4 +183,4 @@ def _change_data(change: Change) -> dict[str, str]:
 
 
 def _findings_data(report: Report) -> list[dict[str, Any]]:
-    return [diagnostic_data(each) for each in report]
+    return [diagnostic_data(diagnostic) for diagnostic in report]

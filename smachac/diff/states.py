@@ -77,8 +77,8 @@ def states_of(machine: Machine) -> States:
     """The states of a machine with their facts. Of two states with one path the first counts."""
     view = written(machine)
     found = {
-        path: State(written=each, path=path, parent=each.parent, children=list(each.children))
-        for path, each in view.states.items()
+        path: State(written=state, path=path, parent=state.parent, children=list(state.children))
+        for path, state in view.states.items()
     }
     for state in found.values():
         around = None if state.parent is None else found[state.parent].children
@@ -95,8 +95,8 @@ def _machine_facts(machine: Machine) -> Iterator[tuple[Fact, Value]]:
         yield ("variable", variable.name), (print_data(variable.value.data),)
     for param in machine.params:
         yield ("param", param.name), (print_data(param.value.data),)
-    for each in machine.properties:
-        yield ("property", each.name), (in_words(each.form),)
+    for property_ in machine.properties:
+        yield ("property", property_.name), (in_words(property_.form),)
     if machine.robot is not None:
         yield ("field", "robot"), (machine.robot.name,)
 
@@ -178,9 +178,9 @@ def _rules(container: Concurrence, path: str) -> Iterator[tuple[Fact, Value]]:
     for rule in container.rules:
         parts = found.setdefault(rule.outcome, [])
         parts += [" or "] if parts else []
-        for number, each in enumerate(rule.when):
+        for number, condition in enumerate(rule.when):
             parts += [" and "] if number else []
-            parts += [StateName(f"{path}/{each.child}"), f" = {each.outcome}"]
+            parts += [StateName(f"{path}/{condition.child}"), f" = {condition.outcome}"]
     for outcome, parts in found.items():
         yield ("rule", outcome), tuple(parts)
 

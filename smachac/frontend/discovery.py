@@ -60,7 +60,7 @@ def scripts_of(
             root = Path(argument.anchor)
             paths = sorted(root.glob(str(argument.relative_to(root))))
             paths = [path for path in paths if path.is_file()]
-            folder = next(each for each in argument.parents if not has_magic(str(each)))
+            folder = next(parent for parent in argument.parents if not has_magic(str(parent)))
             for path in paths:
                 _refuse_link(path, folder, disk)
         if not paths:

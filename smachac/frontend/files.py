@@ -351,7 +351,7 @@ def _inside_repository(project: Project, source: Source, report: Report) -> Proj
     """The project without the search folders outside its git repository, or outside its own folder
     if there is none. A folder that does not exist is reported too."""
     above = (project.folder, *_parents(project.folder))
-    root = next((each for each in above if (each / ".git").exists()), project.folder)
+    root = next((path for path in above if (path / ".git").exists()), project.folder)
     kept: dict[str, list[Path]] = {setting: [] for setting in FOLDERS}
     for setting, folders in kept.items():
         written = folder_places(source, setting, project.folder)
@@ -377,7 +377,7 @@ def _no_folder(setting: str, written: Word, folder: Path) -> Diagnostic:
     """SM007, as a warning: a search folder does not exist."""
     names: list[str] = []
     with contextlib.suppress(OSError):
-        names = sorted(each.name for each in folder.parent.iterdir() if each.is_dir())
+        names = sorted(path.name for path in folder.parent.iterdir() if path.is_dir())
     before = written.text.rstrip("/").removesuffix(folder.name)
     near = did_you_mean(f"{before}{folder.name}", [f"{before}{name}" for name in names])
     return unreadable_file(
@@ -431,8 +431,8 @@ def disk_library(
         if folder.is_dir() and not lies_inside(folder, main.parent):
             refuse(folder, main.parent)
     own_types = [*templates, *project.templates, own_templates]
-    template_folders = [each for each in (*own_types, *BUILT_IN) if each not in refused]
-    code_folders = [each for each in (*project.code, main.parent, include) if each not in refused]
+    template_folders = [type_ for type_ in (*own_types, *BUILT_IN) if type_ not in refused]
+    code_folders = [path for path in (*project.code, main.parent, include) if path not in refused]
 
     def script_folders(caller: str) -> list[Path]:
         return list(dict.fromkeys([Path(caller).parent, *scripts, *project.scripts]))
@@ -502,7 +502,7 @@ def definition_names(path: str, folders: Sequence[Path]) -> list[str]:
     names: set[str] = set()
     for place in _definition_places(path, folders):
         with contextlib.suppress(OSError, ValueError):
-            names.update(each.name for each in place.iterdir())
+            names.update(path.name for path in place.iterdir())
     return sorted(names)
 
 
@@ -523,7 +523,7 @@ def _package_folders(main: Path) -> list[Path]:
     """The folder of a script and those above it, up to the root of its git repository; without
     one, the folder of the script and the one above it."""
     folders = [main.parent, *_parents(main.parent)]
-    root = next((at for at, each in enumerate(folders) if (each / ".git").exists()), 1)
+    root = next((at for at, folder in enumerate(folders) if (folder / ".git").exists()), 1)
     return folders[: root + 1]
 
 

@@ -236,7 +236,7 @@ def names_for(owner: str) -> list[str]:
 
 
 OWN_FIELDS: Mapping[str, frozenset[str]] = {
-    owner: frozenset(names_for(owner)) for owner in {each for row in VARIABLES.values()
-                                                     for each in row.owners}
+    owner: frozenset(names_for(owner)) for owner in {owner for row in VARIABLES.values()
+                                                     for owner in row.owners}
 }  # fmt: skip
 """The long names of the fields of each owner."""

@@ -78,7 +78,7 @@ class _Guided(Scheduler):
         if len(self._done) == len(self._visits):
             return ready[0]  # as after the end of a schedule
         path = self._visits[len(self._done)].path
-        taken = next((each for each in ready if f"{path}/".startswith(f"{each}/")), ready[0])
+        taken = next((text for text in ready if f"{path}/".startswith(f"{text}/")), ready[0])
         self.choices.append(SchedulingChoice(taken=taken, ready=tuple(ready)))
         return taken
 
@@ -90,10 +90,12 @@ def replay(machine: Machine, visits: Sequence[Visited], again: int = -1) -> Repl
     if again >= 0:
         rounds += list(visits[again:]) * (MOST_ROUNDS - 1)
     steps: dict[str, list[ScenarioStep]] = {}
-    for each in rounds:
-        failed = each.outcome is None
-        step = ScenarioStep(outcome=each.outcome, error=FAILURE if failed else "", stop=each.stop)
-        steps.setdefault(each.path, []).append(step)
+    for round_ in rounds:
+        failed = round_.outcome is None
+        step = ScenarioStep(
+            outcome=round_.outcome, error=FAILURE if failed else "", stop=round_.stop
+        )
+        steps.setdefault(round_.path, []).append(step)
     done: list[int] = []
     made: dict[str, int] = {}
     right: list[bool] = []

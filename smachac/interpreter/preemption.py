@@ -44,7 +44,7 @@ class Preemption:
         """Recall (take back) the requests of a state and of all states below it."""
         below = path + "/"
         self.requested -= {
-            each for each in self.requested if each == path or each.startswith(below)
+            text for text in self.requested if text == path or text.startswith(below)
         }
 
     def before_state(self, path: str, previous: str | None, child: str) -> None:

@@ -378,13 +378,13 @@ def _leaves(machine: Machine) -> _Leaves:
 def _leaves_by_path(machine: Machine) -> dict[str, _LeafEntry]:
     around = enclosing(machine.root)
     return {
-        each.full: _LeafEntry(
-            each.node,
-            each.node.open or isinstance(around[each.full][1], Iterator),
-            (each.shown, each.plain, each.full),
+        path.full: _LeafEntry(
+            path.node,
+            path.node.open or isinstance(around[path.full][1], Iterator),
+            (path.shown, path.plain, path.full),
         )
-        for each in walk_script(machine.root)
-        if isinstance(each.node, Leaf)
+        for path in walk_script(machine.root)
+        if isinstance(path.node, Leaf)
     }
 
 
@@ -415,11 +415,11 @@ def _not_found(name: str, machine: Machine, leaves: _Leaves) -> tuple[str, str |
     if matches:
         named = ", ".join(f"`{path}`" for path in matches)
         return f"`{name}` may be any of {named}", "write one of them, or an entry for each"
-    paths = (path for each in walk_script(machine.root) for path in (each.shown, each.full))
+    paths = (path for other in walk_script(machine.root) for path in (other.shown, other.full))
     if any(f"/{path}".endswith(f"/{name}") for path in paths):
         message = f"`{name}` is a container: it ends as its states make it end"
         return message, "name one of its states"
-    shown = [each.paths[0] for each in leaves.by_path.values()]
+    shown = [entry.paths[0] for entry in leaves.by_path.values()]
     names = [*shown, *(path.rpartition("/")[2] for path in shown)]
     return f"there is no state `{name}`", did_you_mean(name, names)
 

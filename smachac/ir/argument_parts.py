@@ -36,10 +36,10 @@ def argument_uses(
     comparisons: list[Comparison] = []
     operands: list[Operand] = []
     for node in nodes:
-        for each in _operands(node):
-            found = part_of(each, names, places)
+        for operand in _operands(node):
+            found = part_of(operand, names, places)
             if found is not None:
-                operands.append(Operand(found, places(each), ast.unparse(node)))
+                operands.append(Operand(found, places(operand), ast.unparse(node)))
         match node:
             case ast.Attribute():
                 found = part_of(node, names, places)
@@ -141,7 +141,7 @@ def own_names(
     """The places in a function with statements that read its parameters, or variables that it has
     `assigned` once. None of a parameter that is set again in it, or whose class or fields it tests;
     none at all in a `try`."""
-    nodes = [each for line in body for each in ast.walk(line)]
+    nodes = [node for line in body for node in ast.walk(line)]
     lost: set[str] = set()
     caught: set[ast.AST] = set()
     for node in nodes:
@@ -159,15 +159,15 @@ def own_names(
             case ast.MatchAs(name=str(name)) | ast.MatchStar(name=str(name)):
                 lost.add(name)
             case ast.Call(func=ast.Name(id=called), args=given) if called in TESTS:
-                lost.update(each.id for one in given for each in ast.walk(one)
-                            if isinstance(each, ast.Name))  # fmt: skip
+                lost.update(node.id for one in given for node in ast.walk(one)
+                            if isinstance(node, ast.Name))  # fmt: skip
             case ast.Match(subject=subject):
-                lost.update(each.id for each in ast.walk(subject) if isinstance(each, ast.Name))
+                lost.update(node.id for node in ast.walk(subject) if isinstance(node, ast.Name))
             case ast.Try():
-                caught.update(each for line in node.body for each in ast.walk(line))
+                caught.update(inner for line in node.body for inner in ast.walk(line))
     known = {*parameters} - lost
     return [
-        each
-        for each in nodes
-        if isinstance(each, ast.Name) and each.id in known and each not in caught
+        node
+        for node in nodes
+        if isinstance(node, ast.Name) and node.id in known and node not in caught
     ]

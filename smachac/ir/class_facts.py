@@ -263,7 +263,7 @@ class ClassFacts:
     @property
     def returns(self) -> tuple[Word, ...]:
         """The constants that `execute` returns."""
-        return tuple(each.outcome for each in self.endings)
+        return tuple(ending.outcome for ending in self.endings)
 
 
 def renamed_name(declared: Iterable[Word] | None, known: Iterable[str]) -> tuple[Word, str] | None:

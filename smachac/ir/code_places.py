@@ -70,7 +70,7 @@ def _offset(text: str, line: int, column: int) -> int:
     """The offset of a position of `ast`, whose columns count bytes of UTF-8."""
     lines = text.split("\n")[:line]
     before = lines.pop().encode("utf-8", "surrogatepass")[:column]
-    return sum(len(each) + 1 for each in lines) + len(before.decode("utf-8", "surrogatepass"))
+    return sum(len(line) + 1 for line in lines) + len(before.decode("utf-8", "surrogatepass"))
 
 
 def _places(written: str, text: str) -> range | list[int] | None:

@@ -136,7 +136,7 @@ def _names_an_argument(tokens: list[_Token], at: int) -> bool:
 def _arrow(tokens: list[_Token], at: int) -> Slip:
     """`->` or `=>`: of a function, or of an attribute in C++."""
     _, text, start, end = tokens[at]
-    if tokens[0].text == "lambda" and not any(each.text == ":" for each in tokens[:at]):
+    if tokens[0].text == "lambda" and not any(token.text == ":" for token in tokens[:at]):
         what = f"the arguments of a lambda end with `:`, not with `{text}`"
         return Slip(start, end, what, "write `lambda ud: ...`")
     if text == "->":
@@ -191,7 +191,7 @@ def _brackets(tokens: list[_Token]) -> Iterator[Slip]:
             due = _PAIRS[opened[-1].text]
             if text != due:
                 what = f"`{text}` cannot close `{opened[-1].text}`"
-                outer = any(_PAIRS[each.text] == text for each in opened)
+                outer = any(_PAIRS[token.text] == text for token in opened)
                 help = f"write `{due}` before this `{text}`" if outer else f"write `{due}`"
                 yield Slip(start, end, what, help)
                 return
@@ -208,7 +208,7 @@ def _gaps(tokens: list[_Token]) -> Iterator[Slip]:
         help = f"write the value after `{text}`, or remove `{text}`"
         yield Slip(start, end, f"nothing follows `{text}`", help)
         return
-    if tokens and tokens[0].text == "lambda" and not any(each.text == ":" for each in tokens):
+    if tokens and tokens[0].text == "lambda" and not any(token.text == ":" for token in tokens):
         what, help = (
             "the `:` after the arguments of the lambda is missing",
             "write `lambda ud: ...`",

@@ -31,5 +31,5 @@ def outcome_of(node: Concurrence, ended: Mapping[str, object]) -> str:
 def by_priority(node: Concurrence) -> list[OutcomeRule]:
     """The rules by priority: the first of them that matches determines the outcome."""
     numbered = enumerate(node.rules)
-    found = sorted(numbered, key=lambda each: (len(each[1].when), each[0]), reverse=True)
+    found = sorted(numbered, key=lambda pair: (len(pair[1].when), pair[0]), reverse=True)
     return [rule for _, rule in found]

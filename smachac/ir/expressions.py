@@ -249,7 +249,7 @@ def _depth_fits(expr: Expr) -> bool:
     """Whether a tree has at most DEEPEST levels."""
     level: Iterable[Expr] = (expr,)
     for _ in range(DEEPEST):
-        level = [part for each in level for part in parts(each)]
+        level = [part for item in level for part in parts(item)]
         if not level:
             return True
     return False
@@ -323,8 +323,8 @@ class _TreeBuilder:
         return Index(found[0], found[1])
 
     def arguments(self, found: list[Any]) -> tuple[tuple[Expr, ...], tuple[tuple[str, Expr], ...]]:
-        positional = tuple(each for each in found if not isinstance(each, tuple))
-        keywords = tuple(each for each in found if isinstance(each, tuple))
+        positional = tuple(item for item in found if not isinstance(item, tuple))
+        keywords = tuple(row for row in found if isinstance(row, tuple))
         if found[: len(positional)] != list(positional):
             raise ValueError("an argument by place follows one by name")
         if len({name for name, _ in keywords}) < len(keywords):
@@ -446,5 +446,5 @@ def _print_operation(expr: Operation) -> tuple[str, int]:
             return _at(_SUM, first) + tail, _COMPARE
         case Boolean(operator, operands):
             own = _OR if operator == "or" else _AND
-            return f" {operator} ".join(_at(own + 1, each) for each in operands), own
+            return f" {operator} ".join(_at(own + 1, operand) for operand in operands), own
     return assert_never(expr)

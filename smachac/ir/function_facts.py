@@ -94,9 +94,9 @@ class FunctionFacts:
         """The texts that it returns, if it returns nothing but constant texts that are not
         empty."""
         found = [
-            Word(each.value, each.span)
-            for each in self.results
-            if each.kind == "constant" and isinstance(each.value, str) and each.value
+            Word(result.value, result.span)
+            for result in self.results
+            if result.kind == "constant" and isinstance(result.value, str) and result.value
         ]
         return tuple(found) if len(found) == len(self.results) else ()
 

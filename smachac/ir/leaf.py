@@ -64,5 +64,5 @@ def given_fields(variables: Iterable[Variable], role: str) -> tuple[str, ...]:
         if held.role == role and isinstance(data, Struct):
             names.update(name for name, _ in data.entries)
         elif held.role == role and isinstance(data, tuple):
-            names.update(each for each in data if isinstance(each, str))
+            names.update(text for text in data if isinstance(text, str))
     return tuple(sorted(names))

@@ -83,7 +83,7 @@ class Message:
     constants: tuple[MessageConstant, ...] = ()
 
     def field(self, name: str) -> MessageField | None:
-        return next((each for each in self.fields if each.name == name), None)
+        return next((other for other in self.fields if other.name == name), None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

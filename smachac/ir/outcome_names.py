@@ -64,9 +64,9 @@ def is_failure(outcome: str) -> bool:
 def fails(node: Node, outcome: str) -> bool:
     """Whether an outcome of a state is a failure: declared, an exception, used up tries of which
     one can fail, or by its name."""
-    for each in node.outcomes:
-        if each.name == outcome and each.failure is not None:
-            return each.failure
+    for result in node.outcomes:
+        if result.name == outcome and result.failure is not None:
+            return result.failure
     return _is_implied_failure(node, outcome)
 
 
@@ -81,10 +81,10 @@ def _is_implied_failure(node: Node, outcome: str) -> bool:
 
 def failures_of(node: Node) -> frozenset[str]:
     """The outcomes of a state that are failures."""
-    declared = {each.name: each.failure for each in reversed(node.outcomes)
-                if each.failure is not None}  # fmt: skip
+    declared = {outcome.name: outcome.failure for outcome in reversed(node.outcomes)
+                if outcome.failure is not None}  # fmt: skip
     return frozenset([
-        name for name in {each.name for each in node.outcomes}
+        name for name in {outcome.name for outcome in node.outcomes}
         if (declared[name] if name in declared else _is_implied_failure(node, name))
     ])  # fmt: skip
 
@@ -92,7 +92,9 @@ def failures_of(node: Node) -> frozenset[str]:
 def tries_may_end(retry: nodes.Iterator) -> bool:
     """Whether used up tries are no failure: each outcome that leads to another try is declared to
     be none, beside the end of a time limit."""
-    declared = {each.name: each.failure for child in retry.children for each in child.outcomes}
+    declared = {
+        outcome.name: outcome.failure for child in retry.children for outcome in child.outcomes
+    }
     others = {name for name in retry.loop_outcomes if declared.get(name) is not False}
     return len(others) < len(retry.loop_outcomes) and others <= TIMEOUTS
 

@@ -119,10 +119,10 @@ class _MachineBuilder:
         built: dict[int, Node] = {}
         # Parents come before their children here; the reverse order builds children first.
         order = [root]
-        for each in order:
-            order.extend(child for child in each.children if _is_node(child))
-        for each in reversed(order):
-            built[id(each)] = self.node(each, built)
+        for item in order:
+            order.extend(child for child in item.children if _is_node(child))
+        for item in reversed(order):
+            built[id(item)] = self.node(item, built)
         outermost = built[id(root)]
         if not isinstance(outermost, StateMachine):
             raise IrSyntaxError("the outermost container is a `machine`", self.span(root))
@@ -130,8 +130,8 @@ class _MachineBuilder:
 
     def node(self, tree: Any, built: Mapping[int, Node]) -> Node:
         kind, name, type_, *rest = tree.children
-        fields = self.fields([each for each in rest if not _is_node(each)], KINDS[kind], kind)
-        children = tuple(built[id(each)] for each in rest if _is_node(each))
+        fields = self.fields([item for item in rest if not _is_node(item)], KINDS[kind], kind)
+        children = tuple(built[id(item)] for item in rest if _is_node(item))
         if children and kind == "state":
             raise IrSyntaxError("a state has no states inside", self.span(tree))
         if children:
@@ -166,8 +166,8 @@ class _MachineBuilder:
         return Span(self.source, place.start_pos, place.end_pos)
 
     def outcomes(self, tree: Any) -> Iterator[Outcome]:
-        for each in tree.children:
-            name, doc = each.children
+        for child in tree.children:
+            name, doc = child.children
             yield Outcome(name=_text(name), doc=_text(doc), span=self.span(name))
 
     def key(self, tree: Any) -> Iterator[Key]:
@@ -252,9 +252,9 @@ class _MachineBuilder:
             case "code":
                 return Expression(text=_text(item.children[0]), span=self.span(item))
             case "list":
-                return tuple([self.data(each) for each in item.children])
+                return tuple([self.data(child) for child in item.children])
             case "struct":
-                pairs = (each.children for each in item.children)
+                pairs = (child.children for child in item.children)
                 return Struct(entries=tuple((_text(name), self.data(data)) for name, data in pairs))
         raise AssertionError(f"the grammar knows a kind of data that the reader does not: {item!r}")
 

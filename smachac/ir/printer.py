@@ -62,8 +62,12 @@ KEYWORDS: Mapping[str, str] = {
 OWN_FIELDS: Mapping[type[Container], tuple[Field[Any], ...]] = {
     kind: tuple(
         sorted(
-            (each for each in fields(kind) if each.compare and each not in fields(kind.__base__)),
-            key=lambda each: isinstance(each.default, tuple),
+            (
+                field
+                for field in fields(kind)
+                if field.compare and field not in fields(kind.__base__)
+            ),
+            key=lambda field: isinstance(field.default, tuple),
         )
     )
     for kind in get_args(Container)
@@ -107,7 +111,7 @@ def print_machine(machine: Machine, types: KeyTypes | None = None) -> str:
         lines.append(margin + head)
         lines.extend(f"{margin}  {statement}" for statement in body)
         todo.append((None, path, depth))
-        todo.extend((each, f"{path}/{each.name}", depth + 1) for each in reversed(children))
+        todo.extend((child, f"{path}/{child.name}", depth + 1) for child in reversed(children))
     return "\n".join(lines) + "\n"
 
 
@@ -159,10 +163,10 @@ def _statements(node: Node) -> Iterator[str]:
     else:
         yield from _line("sugar", node.sugar)
         yield from map(_preset, node.userdata)
-        for each in OWN_FIELDS[type(node)]:
-            value = getattr(node, each.name)
-            if value != each.default:
-                yield from _field(KEYWORDS.get(each.name, each.name), value)
+        for field in OWN_FIELDS[type(node)]:
+            value = getattr(node, field.name)
+            if value != field.default:
+                yield from _field(KEYWORDS.get(field.name, field.name), value)
     for remap in node.remaps:
         yield f"remap {_name(remap.key)} -> {_name(remap.to)}"
     yield from map(_transition, node.transitions)
@@ -198,7 +202,7 @@ def _field(keyword: str, value: Any) -> Iterator[str]:
         case (str(), *_):
             yield f"{keyword} {_names(value)}"
         case (OutcomeRule(), *_):
-            yield from (f"{keyword} {_rule(each)}" for each in value)
+            yield from (f"{keyword} {_rule(item)}" for item in value)
         case _:
             yield from (f"{keyword} {_name(first)} -> {_name(last)}" for first, last in value)
 
@@ -232,7 +236,9 @@ def _transition(step: Transition) -> str:
 
 
 def _rule(rule: OutcomeRule) -> str:
-    conditions = ", ".join(f"{_name(each.child)} = {_name(each.outcome)}" for each in rule.when)
+    conditions = ", ".join(
+        f"{_name(condition.child)} = {_name(condition.outcome)}" for condition in rule.when
+    )
     return f"{_name(rule.outcome)}{' when ' if conditions else ''}{conditions}"
 
 

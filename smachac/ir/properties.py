@@ -130,4 +130,4 @@ def in_words(form: Form) -> str:
 
 def either(events: Atoms) -> str:
     """Alternatives in words."""
-    return " or ".join(f"`{each}`" for each in events)
+    return " or ".join(f"`{event}`" for event in events)

@@ -67,7 +67,7 @@ def script_paths(root: Node) -> dict[str, str]:
     """The paths in the script by full path; only those that differ."""
     if not _has_sugar(root):
         return {}
-    return {each.full: each.shown for each in walk_script(root) if each.shown != each.full}
+    return {path.full: path.shown for path in walk_script(root) if path.shown != path.full}
 
 
 class PlainPaths(dict[str, str]):

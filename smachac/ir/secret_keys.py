@@ -63,7 +63,7 @@ def _same_keys(root: Node) -> Mapping[_Cell, list[_Cell]]:
         around = path.rpartition("/")[0]
         names = remapping(node)
         if around:
-            for key in {each.name for each in (*node.inputs, *node.outputs)}:
+            for key in {input_.name for input_ in (*node.inputs, *node.outputs)}:
                 inner, outer = (path, key), (around, names[key])
                 same[inner].append(outer)
                 same[outer].append(inner)

@@ -137,7 +137,7 @@ class WrittenState:
 
     def next_round(self, outcome: str) -> Round | None:
         """What begins after an outcome of one try or item; None if the state ends."""
-        found = next((each for each in self.badges if outcome in each.again), None)
+        found = next((badge for badge in self.badges if outcome in badge.again), None)
         return None if found is None else _ROUNDS.get(found.field)
 
     def field_of(self, outcome: str) -> BadgeField | None:
@@ -146,9 +146,9 @@ class WrittenState:
             return "catches"
         if outcome in outcome_names(self.node):
             return None
-        found = next((each for each in self.badges if each.outcome == outcome), None)
+        found = next((badge for badge in self.badges if badge.outcome == outcome), None)
         if found is None and outcome == PREEMPTED:
-            found = next((each for each in self.badges if each.field != "catches"), None)
+            found = next((badge for badge in self.badges if badge.field != "catches"), None)
         return found.field if found else None
 
     def part_with(self, outcome: str) -> Part:

@@ -121,10 +121,10 @@ def offers(place: Place | None, selected: list[Body], machine: Machine, path: st
         elif body.states:
             title = f"Extract {name} into {name.lower()}.yml"
             found.append(Offer(title=title, kind="extract", name=name, states=(state,)))
-    paths = [script_path(machine, each, path) for each in selected]
-    states = tuple(each for each in paths if each is not None)
+    paths = [script_path(machine, body, path) for body in selected]
+    states = tuple(path for path in paths if path is not None)
     if states:
-        names = ", ".join(str(each.name.value) for each in selected if each.name is not None)
+        names = ", ".join(str(body.name.value) for body in selected if body.name is not None)
         for type_ in ("StateMachine", "Concurrence") if len(states) > 1 else ("StateMachine",):
             title = f"Contain {names} in a new {type_}"
             found.append(Offer(title=title, kind=f"contain {type_}", name=NEW_CONTAINER,
@@ -137,7 +137,7 @@ def selected_states(place: Place | None, start: int, end: int) -> list[Body]:
     around = place.around if place is not None else None
     if around is None:
         return []
-    return [each for each in around.states if each.start < end and each.end > start]
+    return [state for state in around.states if state.start < end and state.end > start]
 
 
 def perform_offer(

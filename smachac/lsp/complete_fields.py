@@ -29,7 +29,7 @@ def fields(here: Request) -> Iterable[Completion]:
     if body.name is not None and not calls:
         needed.insert(0, "template")
         needed.insert(1, "script") if "transitions" in present else needed.append("script")
-    needed += [name for name, each in variables.items() if each.required]
+    needed += [name for name, variable in variables.items() if variable.required]
     if body.name is None:
         needed.insert(1, "template")
     words = [*needed, *likely(here, type_), *variables, *usual_order(known)]
@@ -107,17 +107,17 @@ def likely(here: Request, type_: StateType | None) -> Iterable[str]:
     """The optional fields that the state probably needs."""
     body, around = here.body, here.around
     if type_ is not None and body.name is not None:
-        given = [each for each in ("outcomes", "input_keys", "output_keys")
-                 if each in type_.given]  # fmt: skip
-        code = [name for name, each in type_.variables.items() if each.role == "callbacks"]
+        given = [name for name in ("outcomes", "input_keys", "output_keys")
+                 if name in type_.given]  # fmt: skip
+        code = [name for name, variable in type_.variables.items() if variable.role == "callbacks"]
         used = used_fields(here)
-        if "outcomes" in given and not any(each.name not in type_.optional
-                                           for each in type_.outcomes):  # fmt: skip
+        if "outcomes" in given and not any(outcome.name not in type_.optional
+                                           for outcome in type_.outcomes):  # fmt: skip
             yield "outcomes"
         if "callbacks" in body.fields and given:
-            yield from (each for each in given if each != "outcomes")
-        yield from [each for each in given if used[each]]
-        yield from [each for each in code if used[each]]
+            yield from (text for text in given if text != "outcomes")
+        yield from [text for text in given if used[text]]
+        yield from [text for text in code if used[text]]
     if body.owner == "Concurrence":
         yield from ("default_outcome", "outcome_map")
     if body.owner == "Iterator":

@@ -16,31 +16,31 @@ def transitions(here: Request) -> Iterable[Completion]:
         return targets(here, place.inner[0], here.around)
     if place.role in (KEY, VALUE):
         given = [*here.facts.outcomes(here.body)]
-        left = [each for each in given if each not in place.siblings]
-        return [Completion(word=each, kind="outcome", doc=outcome_doc(here, each))
-                for each in (success_first(left))]  # fmt: skip
+        left = [text for text in given if text not in place.siblings]
+        return [Completion(word=text, kind="outcome", doc=outcome_doc(here, text))
+                for text in (success_first(left))]  # fmt: skip
     return []
 
 
 def outcome_doc(here: Request, name: str) -> str:
     type_ = here.facts.type_named(here.body.template)
-    found = [each.doc for each in type_.outcomes if each.name == name] if type_ else []
+    found = [outcome.doc for outcome in type_.outcomes if outcome.name == name] if type_ else []
     return found[0] if found else ""
 
 
 def targets(here: Request, outcome: str, around: Body) -> Iterable[Completion]:
     """The states and outcomes to which an outcome may lead, likely ones first."""
     states = around.states
-    mine = next((at for at, each in enumerate(states) if each.start == here.body.start), -1)
-    names = [str(each.name.value) for each in states if each.name is not None]
+    mine = next((at for at, state in enumerate(states) if state.start == here.body.start), -1)
+    names = [str(state.name.value) for state in states if state.name is not None]
     ends = here.facts.outcomes(around) if around.name is not None else around.names("outcomes")
     others = Counter(
         target
-        for at, each in enumerate(states)
-        for word, target in each.pairs("transitions").items()
+        for at, state in enumerate(states)
+        for word, target in state.pairs("transitions").items()
         if at != mine and word == outcome
     )
-    targeted = {target for each in states for target in each.pairs("transitions").values()}
+    targeted = {target for state in states for target in state.pairs("transitions").values()}
     following = names[mine + 1] if 0 <= mine < len(names) - 1 else ""
     own = here.body.pairs("transitions")
     first_way = following and following in own.values()
@@ -73,29 +73,29 @@ def targets(here: Request, outcome: str, around: Body) -> Iterable[Completion]:
 
     ranked = sorted([*names, *ends], key=lambda name: -score(name))
     kinds = dict.fromkeys(ends, "outcome") | dict.fromkeys(names, "state")
-    return [Completion(word=each, kind=kinds[each]) for each in ranked]
+    return [Completion(word=text, kind=kinds[text]) for text in ranked]
 
 
 def targets_of_alike(here: Request, outcome: str, states: list[Body], mine: int) -> Counter[str]:
     """Where the outcome leads in the nearest states that are of the same kind, weighted."""
     found: Counter[str] = Counter()
-    before = [each for at, each in enumerate(states) if at < mine]
-    after = [each for at, each in enumerate(states) if at > mine]
-    for each in [*reversed(before[-2:]), *after[:1]]:
-        target = each.pairs("transitions").get(outcome)
+    before = [state for at, state in enumerate(states) if at < mine]
+    after = [state for at, state in enumerate(states) if at > mine]
+    for body in [*reversed(before[-2:]), *after[:1]]:
+        target = body.pairs("transitions").get(outcome)
         if target is not None:
             found[target] += 1
     kind = "script" if "script" in here.body.fields else "template"
-    same = [each for each in states if kind in each.fields and each.start != here.body.start]
+    same = [state for state in states if kind in state.fields and state.start != here.body.start]
     if kind == "script":
-        for each in same:
-            found.update(each.pairs("transitions").get(outcome, "").split())
+        for body in same:
+            found.update(body.pairs("transitions").get(outcome, "").split())
     return found
 
 
 def is_recovery(here: Request, name: str, states: list[Body]) -> bool:
     """Whether only failures lead to a state."""
-    ways = [by for each in states for by, to in each.pairs("transitions").items() if to == name]
+    ways = [by for state in states for by, to in state.pairs("transitions").items() if to == name]
     return bool(ways) and all(is_failure(by) or by == PREEMPTED for by in ways)
 
 
@@ -104,20 +104,22 @@ def missing_states(here: Request) -> list[str]:
     container = here.place.body if here.place.word is not here.body.name else here.around
     if container is None:
         return []
-    names = {str(each.name.value) for each in container.states if each.name is not None}
+    names = {str(state.name.value) for state in container.states if state.name is not None}
     ends = {*here.facts.outcomes(container), *container.names("outcomes")}
-    wanted = [target for each in container.states for target in each.pairs("transitions").values()]
-    return [each for each in dict.fromkeys(wanted) if each not in names | ends]
+    wanted = [
+        target for state in container.states for target in state.pairs("transitions").values()
+    ]
+    return [fromkey for fromkey in dict.fromkeys(wanted) if fromkey not in names | ends]
 
 
 def children(here: Request) -> Iterable[Completion]:
-    return [Completion(word=str(each.name.value), kind="state")
-            for each in here.body.states if each.name is not None]  # fmt: skip
+    return [Completion(word=str(state.name.value), kind="state")
+            for state in here.body.states if state.name is not None]  # fmt: skip
 
 
 def on_error(here: Request) -> Iterable[Completion]:
-    ends = [Completion(word=each, kind="outcome") for each in here.body.names("outcomes")]
-    failing = [each for each in ends if is_failure(each.word)]
+    ends = [Completion(word=name, kind="outcome") for name in here.body.names("outcomes")]
+    failing = [end for end in ends if is_failure(end.word)]
     return [*failing, *children(here), *ends]
 
 
@@ -127,9 +129,9 @@ def outcomes(here: Request) -> Iterable[Completion]:
     type_ = here.facts.type_named(here.body.template)
     wanted: list[str] = []
     if here.body.states:
-        names = {str(each.name.value) for each in here.body.states if each.name is not None}
-        for each in here.body.states:
-            wanted += [to for to in each.pairs("transitions").values() if to not in names]
+        names = {str(state.name.value) for state in here.body.states if state.name is not None}
+        for state in here.body.states:
+            wanted += [to for to in state.pairs("transitions").values() if to not in names]
         wanted += here.body.names("outcome_map")
         wanted += here.body.pairs("final_outcome_map").values()
         wanted += [here.body.text("exhausted_outcome")]
@@ -137,101 +139,101 @@ def outcomes(here: Request) -> Iterable[Completion]:
     steps = here.body.names("callbacks") if here.body.text("default_outcome") else []
     wanted += steps
     if type_ is not None and "outcomes" not in type_.given:
-        wanted += [each.name for each in type_.outcomes]
+        wanted += [outcome.name for outcome in type_.outcomes]
     usual = ["succeeded", "aborted", PREEMPTED]
     taken = known | {here.body.text("default_outcome")}
-    found = [each for each in success_first(dict.fromkeys(wanted)) if each not in taken]
-    return [Completion(word=each, kind="outcome")
-            for each in [*found, *(each for each in usual if each not in known)]]  # fmt: skip
+    found = [text for text in success_first(dict.fromkeys(wanted)) if text not in taken]
+    return [Completion(word=text, kind="outcome")
+            for text in [*found, *(word for word in usual if word not in known)]]  # fmt: skip
 
 
 def outcome_map(here: Request) -> Iterable[Completion]:
     """The parts of a concurrence's rules: outcome, child, outcome of the child."""
     place = here.place
     if place.role == KEY and not place.inner:
-        left = [each for each in here.body.names("outcomes") if each not in place.siblings]
+        left = [name for name in here.body.names("outcomes") if name not in place.siblings]
         default = here.body.text("default_outcome")
-        return [Completion(word=each, kind="outcome")
-                for each in sorted(left, key=lambda each: each == default)]  # fmt: skip
+        return [Completion(word=text, kind="outcome")
+                for text in sorted(left, key=lambda word: word == default)]  # fmt: skip
     if place.role == KEY and len(place.inner) == 1:
-        return [each for each in children(here) if each.word not in place.siblings]
+        return [child for child in children(here) if child.word not in place.siblings]
     if place.role == VALUE and len(place.inner) == 2:
         child = child_named(here, place.inner[1])
         outcomes = here.facts.outcomes(child) if child is not None else []
         bad = is_failure(place.inner[0])
-        ranked = sorted(success_first(outcomes), key=lambda each: is_failure(each) != bad)
-        same = [each for each in ranked if each == place.inner[0]]
-        return [Completion(word=each, kind="outcome") for each in [*same, *ranked]]
+        ranked = sorted(success_first(outcomes), key=lambda text: is_failure(text) != bad)
+        same = [text for text in ranked if text == place.inner[0]]
+        return [Completion(word=text, kind="outcome") for text in [*same, *ranked]]
     return []
 
 
 def child_named(here: Request, name: str) -> Body | None:
-    return next((each for each in here.body.states
-                 if each.name is not None and str(each.name.value) == name), None)  # fmt: skip
+    return next((state for state in here.body.states
+                 if state.name is not None and str(state.name.value) == name), None)  # fmt: skip
 
 
 def default_outcome(here: Request) -> Iterable[Completion]:
     declared = here.body.names("outcomes")
     if here.body.owner == "Concurrence":
         mapped = {*here.body.names("outcome_map")}
-        ranked = sorted(declared, key=lambda each: (each in mapped, not is_failure(each)))
+        ranked = sorted(declared, key=lambda text: (text in mapped, not is_failure(text)))
     else:
-        led = [each for each in here.body.pairs("transitions") if each not in declared]
+        led = [pair for pair in here.body.pairs("transitions") if pair not in declared]
         ranked = [*led, *declared]
-    return [Completion(word=each, kind="outcome") for each in ranked]
+    return [Completion(word=text, kind="outcome") for text in ranked]
 
 
 def connector(here: Request) -> Iterable[Completion]:
-    count = Counter(outcome for each in here.body.states for outcome in here.facts.outcomes(each))
-    led = Counter(outcome for each in here.body.states for outcome in each.pairs("transitions"))
-    ranked = sorted(count, key=lambda each: (led[each] - count[each], is_failure(each)))
-    return [Completion(word=each, kind="outcome") for each in ranked]
+    count = Counter(outcome for state in here.body.states for outcome in here.facts.outcomes(state))
+    led = Counter(outcome for state in here.body.states for outcome in state.pairs("transitions"))
+    ranked = sorted(count, key=lambda text: (led[text] - count[text], is_failure(text)))
+    return [Completion(word=text, kind="outcome") for text in ranked]
 
 
 def endings(here: Request) -> Iterable[Completion]:
     """What an Iterator can end with."""
     taken = {*here.body.pairs("final_outcome_map").values()}
-    inner = [o for each in here.body.states for o in here.facts.outcomes(each)]
-    words = [each for each in here.body.names("outcomes") if each not in (*inner, *taken)]
+    inner = [o for state in here.body.states for o in here.facts.outcomes(state)]
+    words = [name for name in here.body.names("outcomes") if name not in (*inner, *taken)]
     ranked = [*success_first(words), *here.body.names("outcomes")]
-    return [Completion(word=each, kind="outcome") for each in ranked]
+    return [Completion(word=text, kind="outcome") for text in ranked]
 
 
 def inner_outcomes(here: Request) -> list[str]:
-    found = [each for child in here.body.states for each in here.facts.outcomes(child)]
+    found = [outcome for child in here.body.states for outcome in here.facts.outcomes(child)]
     return list(dict.fromkeys(found))
 
 
 def loop_outcomes(here: Request) -> Iterable[Completion]:
     own = {*here.body.names("outcomes")}
     ending = here.place.field == "break_outcomes"
-    left = [each for each in inner_outcomes(here) if each not in here.place.siblings]
-    ranked = sorted(left, key=lambda each: ((each in own) != ending, is_failure(each)))
-    return [Completion(word=each, kind="outcome") for each in ranked]
+    left = [outcome for outcome in inner_outcomes(here) if outcome not in here.place.siblings]
+    ranked = sorted(left, key=lambda text: ((text in own) != ending, is_failure(text)))
+    return [Completion(word=text, kind="outcome") for text in ranked]
 
 
 def final_map(here: Request) -> Iterable[Completion]:
     if here.place.role == KEY:
         looped = here.body.names("loop_outcomes")
         words = [*looped, *inner_outcomes(here), here.body.text("exhausted_outcome")]
-        left = [each for each in words if each not in here.place.siblings]
-        return [Completion(word=each, kind="outcome") for each in left]
+        left = [word for word in words if word not in here.place.siblings]
+        return [Completion(word=text, kind="outcome") for text in left]
     inner = {*inner_outcomes(here), here.body.text("exhausted_outcome")}
     words = here.body.names("outcomes")
-    ranked = sorted(words, key=lambda each: each in inner)
-    return [Completion(word=each, kind="outcome") for each in ranked]
+    ranked = sorted(words, key=lambda word: word in inner)
+    return [Completion(word=text, kind="outcome") for text in ranked]
 
 
 def retry(here: Request) -> Iterable[Completion]:
     place = here.place
     if place.role in (ITEM, VALUE) and place.inner[:1] == ("on",):
         known = here.facts.outcomes(here.body)
-        left = [each for each in known if each not in (*place.siblings, "exhausted")]
-        ranked = sorted(left, key=lambda each: not is_failure(each))
-        return [Completion(word=each, kind="outcome") for each in ranked]
+        left = [text for text in known if text not in (*place.siblings, "exhausted")]
+        ranked = sorted(left, key=lambda text: not is_failure(text))
+        return [Completion(word=text, kind="outcome") for text in ranked]
     if place.role == KEY:
-        left = [each for each in ("on", "max", "delay") if each not in place.siblings]
-        return [Completion(word=each, kind="field", text=f"{each}: ") for each in left]
+        left = [name for name in ("on", "max", "delay") if name not in place.siblings]
+        return [Completion(word=text, kind="field", text=f"{text}: ") for text in left]
     return []
 
 

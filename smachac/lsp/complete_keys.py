@@ -32,9 +32,9 @@ def remapping(here: Request) -> Iterable[Completion]:
     known = facts.keys_in(here.around)
     if place.role == KEY:
         there = {*known}
-        left = [each for each in dict.fromkeys(own) if each not in place.siblings]
-        ranked = sorted(left, key=lambda each: each in there and known[each] > 1)
-        return [Completion(word=each, kind="key") for each in ranked]
+        left = [fromkey for fromkey in dict.fromkeys(own) if fromkey not in place.siblings]
+        ranked = sorted(left, key=lambda text: text in there and known[text] > 1)
+        return [Completion(word=text, kind="key") for text in ranked]
     if not place.inner:
         return []
     wanted, writes = place.inner[0], place.inner[0] in facts.outputs(here.body)
@@ -42,9 +42,9 @@ def remapping(here: Request) -> Iterable[Completion]:
     taken = {*here.body.pairs("remapping").values()}
     cooperating = Counter(
         to
-        for each in here.around.states
-        if each.start != here.body.start
-        for key, to in each.pairs("remapping").items()
+        for state in here.around.states
+        if state.start != here.body.start
+        for key, to in state.pairs("remapping").items()
         if key == wanted
     )
     before, after = neighbour_keys(here)
@@ -62,18 +62,18 @@ def remapping(here: Request) -> Iterable[Completion]:
         return total
 
     ranked = sorted(dict.fromkeys([*known, wanted]), key=lambda name: -score(name))
-    return [key_word(here, each) for each in ranked]
+    return [key_word(here, text) for text in ranked]
 
 
 def neighbour_keys(here: Request) -> tuple[set[str], set[str]]:
     """The keys that the state before writes, and those that the state after reads."""
     assert here.around is not None
     states = here.around.states
-    at = next((at for at, each in enumerate(states) if each.start == here.body.start), -1)
+    at = next((at for at, state in enumerate(states) if state.start == here.body.start), -1)
     before = states[at - 1 : at] if at > 0 else []
     after = states[at + 1 : at + 2] if at >= 0 else []
-    wrote = [each for state in before for each in here.facts.outer_keys(state)]
-    reads = [each for state in after for each in here.facts.outer_keys(state)]
+    wrote = [key for state in before for key in here.facts.outer_keys(state)]
+    reads = [key for state in after for key in here.facts.outer_keys(state)]
     return {key for key, writes in wrote if writes}, {key for key, writes in reads if not writes}
 
 
@@ -100,7 +100,7 @@ def declared_keys(here: Request) -> Iterable[Completion]:
         scope = here.facts.keys_in(here.around)
         back = {to: key for key, to in here.body.pairs("remapping").items()}
         found |= dict.fromkeys(back.get(key, key) for key in scope)
-    return [key_word(here, each) for each in found if each not in known]
+    return [key_word(here, text) for text in found if text not in known]
 
 
 def userdata(here: Request) -> Iterable[Completion]:
@@ -109,45 +109,45 @@ def userdata(here: Request) -> Iterable[Completion]:
     if place.role == VALUE and place.inner[1:] == ("type",):
         return types(here)
     if place.role == KEY and place.inner:
-        left = [each for each in PRESET_FIELDS if each not in place.siblings]
-        return [Completion(word=each, kind="field", text=f"{each}: ") for each in left]
+        left = [field for field in PRESET_FIELDS if field not in place.siblings]
+        return [Completion(word=text, kind="field", text=f"{text}: ") for text in left]
     if place.role != KEY:
         return []
     if here.body.states:
-        uses = [each for child in here.body.states for each in here.facts.outer_keys(child)]
+        uses = [key for child in here.body.states for key in here.facts.outer_keys(child)]
     else:
         uses = [(to, False) for to in here.body.pairs("remapping").values()]
         uses += [(key, False) for key in here.facts.inputs(here.body)]
     written = {key for key, writes in uses if writes}
     read = [key for key, writes in uses if not writes]
     ranked = sorted(dict.fromkeys(read), key=lambda key: key in written)
-    return [Completion(word=each, kind="key") for each in ranked if each not in place.siblings]
+    return [Completion(word=text, kind="key") for text in ranked if text not in place.siblings]
 
 
 def item_keys(here: Request) -> Iterable[Completion]:
     scope = here.facts.keys_in(here.around) if here.around is not None else {}
     own = here.body.names("input_keys")
-    return [key_word(here, each) for each in dict.fromkeys([*own, *scope])]
+    return [key_word(here, fromkey) for fromkey in dict.fromkeys([*own, *scope])]
 
 
 def label_keys(here: Request) -> Iterable[Completion]:
     used = [key for child in here.body.states for key, writes in here.facts.outer_keys(child)
             if not writes and key not in here.body.names("input_keys")]  # fmt: skip
-    return [key_word(here, each) for each in dict.fromkeys(used)]
+    return [key_word(here, fromkey) for fromkey in dict.fromkeys(used)]
 
 
 def for_each(here: Request) -> Iterable[Completion]:
     place = here.place
     if place.role == KEY:
-        left = [each for each in ("item", "in", "on") if each not in place.siblings]
-        return [Completion(word=each, kind="field", text=f"{each}: ") for each in left]
+        left = [name for name in ("item", "in", "on") if name not in place.siblings]
+        return [Completion(word=text, kind="field", text=f"{text}: ") for text in left]
     if place.inner[:1] == ("item",):
-        return [key_word(here, each) for each in here.facts.inputs(here.body)]
+        return [key_word(here, input_) for input_ in here.facts.inputs(here.body)]
     if place.inner[:1] == ("in",) and here.around is not None:
-        return [key_word(here, each) for each in here.facts.keys_in(here.around)]
+        return [key_word(here, key) for key in here.facts.keys_in(here.around)]
     if place.inner[:1] == ("on",):
-        return [Completion(word=each, kind="outcome")
-                for each in here.facts.outcomes(here.body)]  # fmt: skip
+        return [Completion(word=outcome, kind="outcome")
+                for outcome in here.facts.outcomes(here.body)]  # fmt: skip
     return []
 
 
@@ -155,13 +155,13 @@ def callbacks(here: Request) -> Iterable[Completion]:
     if here.place.role != KEY:
         return []
     words = [*here.body.names("output_keys"), *here.body.names("outcomes")]
-    return [Completion(word=each, kind="key") for each in words
-            if each not in here.place.siblings]  # fmt: skip
+    return [Completion(word=word, kind="key") for word in words
+            if word not in here.place.siblings]  # fmt: skip
 
 
 def types(here: Request) -> Iterable[Completion]:
     named = [name for body in here.place.bodies[:1] for name in body.names("types")]
-    return [Completion(word=each, kind="type") for each in [*named, *WORDS]]
+    return [Completion(word=word, kind="type") for word in [*named, *WORDS]]
 
 
 def expressions(body: Body) -> Iterable[str]:

@@ -34,7 +34,7 @@ def templates(here: Request) -> Iterable[Completion]:
             word = Completion(word=name, kind="template", doc=type_.doc)
         score = fitness(here, name, type_)
         ranked.append(((-score, -used[name], number), word))
-    return [word for _, word in sorted(ranked, key=lambda each: each[0])]
+    return [word for _, word in sorted(ranked, key=lambda pair: pair[0])]
 
 
 def used_templates(here: Request) -> Iterable[str]:
@@ -61,16 +61,16 @@ def fitness(here: Request, name: str, type_: StateType | None) -> float:
     common = {*schema.names_for("state")}
     own = {*type_.variables}
     extra = fields - common - own
-    missing = [each for each in type_.variables.values() if each.required]
+    missing = [variable for variable in type_.variables.values() if variable.required]
     score = 2.0 * len(fields & own) - 3.0 * len(extra)
-    score -= 2.0 * len([each for each in missing if each.name not in fields])
-    outcomes = {each.name for each in type_.outcomes} | {*here.body.names("outcomes")}
+    score -= 2.0 * len([type_ for type_ in missing if type_.name not in fields])
+    outcomes = {outcome.name for outcome in type_.outcomes} | {*here.body.names("outcomes")}
     outcomes |= {here.body.text("default_outcome")}
     led = {*here.body.pairs("transitions")} - {"timeout", "exhausted"}
     free = "outcomes" in type_.given
     score -= 2.0 * len(led - outcomes) if not (free and not type_.open) else 0.0
-    score += 0.5 * len(led & {each.name for each in type_.outcomes})
-    must = {each.name for each in type_.outcomes} - type_.optional
+    score += 0.5 * len(led & {outcome.name for outcome in type_.outcomes})
+    must = {outcome.name for outcome in type_.outcomes} - type_.optional
     score -= 0.5 * len(must - led - {PREEMPTED}) if led else 0.0
     keys = {key.name for key in (*type_.input_keys, *type_.output_keys)}
     score += 1.5 * len(keys & {*here.body.pairs("remapping")})
@@ -85,7 +85,7 @@ def fitness(here: Request, name: str, type_: StateType | None) -> float:
 def is_simulated(here: Request) -> bool:
     """Whether a state of the script has a type that uses the simulated world."""
     types = map(here.facts.type_named, used_templates(here))
-    return any(each.simulation for each in types if each is not None and each.kind == "state")
+    return any(type_.simulation for type_ in types if type_ is not None and type_.kind == "state")
 
 
 def is_robot_of(here: Request, type_: StateType) -> bool:
@@ -104,15 +104,15 @@ def scripts(here: Request) -> Iterable[Completion]:
     known = here.facts.library.script_names(here.facts.caller)
     given = {*here.body.pairs("remapping")} | {*here.body.names("params")}
     ranked = []
-    for number, each in enumerate(known):
-        found = here.facts.sub_script(each, here.facts.caller)
+    for number, text in enumerate(known):
+        found = here.facts.sub_script(text, here.facts.caller)
         if found is None or found[1].name is None:
             continue  # a script of its own
         inner = found[1]
-        score = 3 * (each == name) + 2 * (str(inner.name.value).lower() == name)  # type: ignore[union-attr]
+        score = 3 * (text == name) + 2 * (str(inner.name.value).lower() == name)  # type: ignore[union-attr]
         score += len(given & {*inner.names("input_keys"), *inner.names("output_keys")})
         led = {*here.body.pairs("transitions")}
         score += len(led & {*inner.names("outcomes")}) - len(led - {*inner.names("outcomes")})
-        ranked.append((-score, number, Completion(word=each, kind="script",
+        ranked.append((-score, number, Completion(word=text, kind="script",
                                                   doc=inner.text("doc"))))  # fmt: skip
-    return [word for _, _, word in sorted(ranked, key=lambda each: each[:2])]
+    return [word for _, _, word in sorted(ranked, key=lambda row: row[:2])]

@@ -20,8 +20,8 @@ def params(here: Request) -> Iterable[Completion]:
     """The params that the sub-script of a call looks up."""
     if here.place.role != KEY or not here.body.text("script"):
         return []
-    return [Completion(word=each, kind="param") for each in params_of_call(here)
-            if each not in here.place.siblings]  # fmt: skip
+    return [Completion(word=param, kind="param") for param in params_of_call(here)
+            if param not in here.place.siblings]  # fmt: skip
 
 
 def params_of_call(here: Request) -> list[str]:
@@ -34,19 +34,23 @@ def params_of_call(here: Request) -> list[str]:
 
 def choices(here: Request) -> Iterable[Completion]:
     words = schema.FIELD_CHOICES.get(here.place.field, ())
-    return [Completion(word=each, kind="value") for each in words]
+    return [Completion(word=word, kind="value") for word in words]
 
 
 def robots(here: Request) -> Iterable[Completion]:
     """The built-in robots."""
-    return [Completion(word=each, kind="value") for each in BUILT_IN]
+    return [Completion(word=text, kind="value") for text in BUILT_IN]
 
 
 def _choices_of(type_: Type) -> list[str]:
     """The words of a type that has few values; empty for other types."""
     if type_.name == "optional" and isinstance(type_.args[0], Type):
         return _choices_of(type_.args[0])
-    return [each for each in type_.args if isinstance(each, str)] if type_.name == "one_of" else []
+    return (
+        [argument for argument in type_.args if isinstance(argument, str)]
+        if type_.name == "one_of"
+        else []
+    )
 
 
 def _robot(here: Request) -> Robot | None:
@@ -88,7 +92,7 @@ def _loaded(here: Request) -> Iterable[str]:
     """The bodies of the states that load a model, by name; without one, that of the model."""
     for body in here.place.bodies[0].states:
         type_ = here.facts.type_named(body.template)
-        named = {each.role: name for name, each in type_.variables.items()} if type_ else {}
+        named = {variable.role: name for name, variable in type_.variables.items()} if type_ else {}
         if "model" in named and body.start != here.body.start:
             yield body.text("body") or body.text(named["model"])
 
@@ -110,25 +114,25 @@ def variable(here: Request) -> Iterable[Completion]:
     if here.place.role == KEY and variable is not None and variable.role == "callbacks":
         return callbacks(here)
     if here.place.role == KEY and variable is not None and variable.role == "steps":
-        left = [each for each in ("outcome", "set") if each not in here.place.siblings]
+        left = [name for name in ("outcome", "set") if name not in here.place.siblings]
         if not here.place.inner:
-            return [Completion(word=each, kind="field", text=f"{each}: ") for each in left]
-        return [key_word(here, each) for each in here.facts.outputs(here.body)]
+            return [Completion(word=text, kind="field", text=f"{text}: ") for text in left]
+        return [key_word(here, output) for output in here.facts.outputs(here.body)]
     if variable is not None and here.place.inner[-1:] == ("outcome",):
         words = success_first(here.facts.outcomes(here.body))
-        return [Completion(word=each, kind="outcome") for each in words]
+        return [Completion(word=word, kind="outcome") for word in words]
     if variable is not None and str(variable.type) in ("bool", "bool?"):
-        return [Completion(word=each, kind="value") for each in ("true", "false")]
+        return [Completion(word=name, kind="value") for name in ("true", "false")]
     if variable is not None and (words := _choices_of(variable.type)):
-        return [Completion(word=each, kind="value") for each in words]
+        return [Completion(word=word, kind="value") for word in words]
     if variable is not None and variable.role in NAMES:
-        return [Completion(word=each, kind="value") for each in NAMES[variable.role](here)]
+        return [Completion(word=text, kind="value") for text in NAMES[variable.role](here)]
     if variable is not None and variable.keys:
         return item_keys(here)
     used = Counter(
-        each.text(here.place.field)
+        state.text(here.place.field)
         for body in here.place.bodies
-        for each in body.states
-        if each.template == here.body.template
+        for state in body.states
+        if state.template == here.body.template
     )
-    return [Completion(word=each, kind="value") for each, _ in used.most_common() if each]
+    return [Completion(word=text, kind="value") for text, _ in used.most_common() if text]

@@ -47,7 +47,11 @@ def complete(text: str, offset: int, path: str, view: View | None) -> list[Compl
     machine = view.machine
     facts = Facts(view.library, path, machine.state_types if machine is not None else {})
     found = _words(Request(facts=facts, place=place, view=view))
-    unique = {each.word: each for each in reversed([*found]) if each.word and each.word != MARK}
+    unique = {
+        completion.word: completion
+        for completion in reversed([*found])
+        if completion.word and completion.word != MARK
+    }
     return list(reversed(unique.values()))
 
 
@@ -59,7 +63,7 @@ def _words(here: Request) -> Iterable[Completion]:
     if place.role == STATE:
         return [Completion(word=name, kind="state") for name in complete_flow.missing_states(here)]
     if place.siblings[:1] == ("params",) or _is_look_up(here):
-        return [Completion(word=each, kind="param") for each in here.facts.params(place.bodies)]
+        return [Completion(word=param, kind="param") for param in here.facts.params(place.bodies)]
     return BY_FIELD.get(place.field, complete_values.variable)(here)
 
 

@@ -77,8 +77,8 @@ class Facts:
             return declared
         default = body.text("default_outcome")
         optional = type_.optional
-        fixed = [each.name for each in type_.outcomes if each.name not in optional]
-        rest = [each.name for each in type_.outcomes if each.name in optional]
+        fixed = [outcome.name for outcome in type_.outcomes if outcome.name not in optional]
+        rest = [outcome.name for outcome in type_.outcomes if outcome.name in optional]
         return [*declared, *([default] if default else []), *fixed, *rest]
 
     def inputs(self, body: Body) -> list[str]:

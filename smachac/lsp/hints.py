@@ -32,7 +32,7 @@ def hints(view: View, path: str) -> list[Hint]:
         todo += body.states
         found += _key_hints(body, view, path)
     found += _transition_hints(view, path)
-    return sorted(found, key=lambda each: each.offset)
+    return sorted(found, key=lambda hint: hint.offset)
 
 
 def _key_hints(body: Body, view: View, path: str) -> Iterator[Hint]:
@@ -46,11 +46,11 @@ def _key_hints(body: Body, view: View, path: str) -> Iterator[Hint]:
     for field in ("userdata", "input_keys", "output_keys"):
         entry = body.fields.get(field)
         value = entry.value if entry is not None else None
-        words = [each for each in value.items if isinstance(each, Scalar)] if isinstance(
+        words = [item for item in value.items if isinstance(item, Scalar)] if isinstance(
             value, Seq) else []  # fmt: skip
         if isinstance(value, Map) and field == "userdata":
-            words = [each.key for each in value.entries
-                     if not (isinstance(each.value, Map) and each.value.get("type"))]  # fmt: skip
+            words = [entry.key for entry in value.entries
+                     if not (isinstance(entry.value, Map) and entry.value.get("type"))]  # fmt: skip
         for word in words:
             type_ = context.types.keys.get((container, str(word.value)), ANY)
             if type_ != ANY:
@@ -66,8 +66,8 @@ def _transition_hints(view: View, path: str) -> Iterator[Hint]:
         node = state.node
         if node.span.source is not view.source or node.span.start in seen:
             continue
-        steps = [each for each in node.transitions if each.origin == "implicit"]
+        steps = [transition for transition in node.transitions if transition.origin == "implicit"]
         if steps and node is state.outer:
             seen.add(node.span.start)
-            words = ", ".join(f"{each.outcome} \u2192 {each.target}" for each in steps)
+            words = ", ".join(f"{step.outcome} \u2192 {step.target}" for step in steps)
             yield Hint(offset=node.span.end + 1, text=f" {words}", is_type=False)

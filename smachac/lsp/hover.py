@@ -84,7 +84,7 @@ def _template(name: str, facts: Facts) -> str:
 def _sub_script(name: str, body: Body, facts: Facts) -> str:
     rows = [("outcomes", facts.outcomes(body)), ("input keys", facts.inputs(body)),
             ("output keys", facts.outputs(body))]  # fmt: skip
-    lines = [f"- {title}: {', '.join(f'`{each}`' for each in names)}" for title, names in rows
+    lines = [f"- {title}: {', '.join(f'`{name}`' for name in names)}" for title, names in rows
              if names]  # fmt: skip
     return "\n\n".join(filter(None, [f"**{name}**", body.text("doc"), "\n".join(lines)]))
 
@@ -103,7 +103,11 @@ def _named(named: Named, facts: Facts, view: View, path: str) -> str:
     if named.kind == "outcome":
         inner = facts.called(named.body)
         type_ = facts.type_named(inner.template)
-        docs = [each.doc for each in type_.outcomes if each.name == named.name] if type_ else []
+        docs = (
+            [outcome.doc for outcome in type_.outcomes if outcome.name == named.name]
+            if type_
+            else []
+        )
         owner = named.body.name.value if named.body.name is not None else "the script"
         return "\n\n".join([f"outcome `{named.name}` of {owner}", *filter(None, docs)])
     plain = script_path(context.machine, named.body, path) if context is not None else None

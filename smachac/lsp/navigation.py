@@ -65,7 +65,7 @@ def named_at(place: Place, facts: Facts) -> Named | None:
         case "final_outcome_map" if role == VALUE:
             return _outcome(body, word, facts)
         case "final_outcome_map" | "loop_outcomes" | "break_outcomes" | "connector_outcome":
-            children = [each for each in body.states if word in facts.outcomes(each)]
+            children = [state for state in body.states if word in facts.outcomes(state)]
             return _outcome(children[0], word, facts) if children else None
         case "remapping" if role == VALUE and around is not None:
             return _key(around, word, facts)
@@ -90,8 +90,8 @@ def _state(body: Body) -> Named | None:
 
 
 def _body_named(container: Body, name: str) -> Body | None:
-    return next((each for each in container.states
-                 if each.name is not None and str(each.name.value) == name), None)  # fmt: skip
+    return next((state for state in container.states
+                 if state.name is not None and str(state.name.value) == name), None)  # fmt: skip
 
 
 def _child(container: Body, name: str) -> Named | None:
@@ -105,14 +105,16 @@ def _child_or_outcome(container: Body, name: str, facts: Facts) -> Named | None:
 
 def _outcome(body: Body, name: str, facts: Facts) -> Named | None:
     inner = facts.called(body)
-    spans = [each.span for each in _names(inner.fields.get("outcomes")) if str(each.value) == name]
+    spans = [
+        scalar.span for scalar in _names(inner.fields.get("outcomes")) if str(scalar.value) == name
+    ]
     for field in ("default_outcome", "exhausted_outcome"):
         entry = inner.fields.get(field)
         if entry is not None and isinstance(entry.value, Scalar) and inner.text(field) == name:
             spans.append(entry.value.span)
     type_ = facts.type_named(inner.template)
     if type_ is not None:
-        spans += [each.span for each in type_.outcomes if each.name == name]
+        spans += [outcome.span for outcome in type_.outcomes if outcome.name == name]
     if not spans:
         return None
     return Named(kind="outcome", name=name, body=body, declared=spans[0], places=tuple(spans[:1]))
@@ -122,9 +124,9 @@ def _names(entry: Entry | None) -> Iterator[Scalar]:
     """The words of a field that is a list, or the keys of one that is a mapping."""
     match entry.value if entry is not None else None:
         case Seq(items=items):
-            yield from (each for each in items if isinstance(each, Scalar))
+            yield from (item for item in items if isinstance(item, Scalar))
         case Map(entries=entries):
-            yield from (each.key for each in entries)
+            yield from (entry.key for entry in entries)
 
 
 def _key(container: Body, name: str, facts: Facts) -> Named | None:
@@ -133,10 +135,10 @@ def _key(container: Body, name: str, facts: Facts) -> Named | None:
     if not states or states[0].name is None:
         return None
     places = [
-        each.span
+        scalar.span
         for field in ("userdata", "input_keys", "output_keys")
-        for each in _names(container.fields.get(field))
-        if str(each.value) == name
+        for scalar in _names(container.fields.get(field))
+        if str(scalar.value) == name
     ]
     if not places:
         for child in states:
@@ -153,11 +155,11 @@ def _written_in(child: Body, name: str) -> Span | None:
     """The word of a state for a key of the container that it writes."""
     entry = child.fields.get("remapping")
     pairs = entry.value.entries if entry is not None and isinstance(entry.value, Map) else ()
-    for each in pairs:
-        if isinstance(each.value, Scalar) and str(each.value.value) == name:
-            return each.value.span
+    for pair in pairs:
+        if isinstance(pair.value, Scalar) and str(pair.value.value) == name:
+            return pair.value.span
     words = (*_names(child.fields.get("output_keys")), *_names(child.fields.get("userdata")))
-    return next((each.span for each in words if str(each.value) == name), None)
+    return next((word.span for word in words if str(word.value) == name), None)
 
 
 def _name_span(body: Body) -> Span:
@@ -190,7 +192,9 @@ def _around(word: Scalar) -> str:
 
 def _params(place: Place, name: str) -> list[Span]:
     for body in reversed(place.bodies):
-        found = [each.span for each in _names(body.fields.get("params")) if str(each.value) == name]
+        found = [
+            scalar.span for scalar in _names(body.fields.get("params")) if str(scalar.value) == name
+        ]
         if found:
             return found
     return []
@@ -200,7 +204,7 @@ def type_places(name: str, facts: Facts) -> list[Span]:
     """The interface or template of a state type, and its Python class."""
     library = facts.library
     files = (f"{name}.yml", f"{name}.tpl.py", f"{name}.tpl")
-    found = [source for each in files if (source := library.template(each)) is not None][:1]
+    found = [source for file in files if (source := library.template(file)) is not None][:1]
     places = [Span(source, 0, 0) for source in found]
     type_ = facts.type_named(name)
     if type_ is not None:
@@ -239,14 +243,14 @@ def _variable_places(body: Body, name: str, facts: Facts) -> list[Span]:
 def _interface_key(body: Body, name: str, facts: Facts) -> list[Span]:
     source = facts.library.template(f"{body.template}.yml")
     tree = facts.library.parse(source, []) if source is not None else None
-    own = [each.span for part in ("input_keys", "output_keys")
-           for each in _names(body.fields.get(part)) if str(each.value) == name]  # fmt: skip
+    own = [scalar.span for part in ("input_keys", "output_keys")
+           for scalar in _names(body.fields.get(part)) if str(scalar.value) == name]  # fmt: skip
     return [*own, *_in_section(tree, "input_keys", name), *_in_section(tree, "output_keys", name)]
 
 
 def _in_section(tree: Tree | None, section: str, name: str) -> list[Span]:
     entry = tree.get(section) if isinstance(tree, Map) else None
-    return [each.span for each in _names(entry) if str(each.value) == name]
+    return [scalar.span for scalar in _names(entry) if str(scalar.value) == name]
 
 
 def references(named: Named, machines: list[Machine]) -> list[Span]:
@@ -272,7 +276,9 @@ def references(named: Named, machines: list[Machine]) -> list[Span]:
             RENAME[named.kind](work, machine, named.declared)
         except RefusedError:
             continue
-    found = dict.fromkeys([*named.places, *(s for each in editors.values() for s in each.replaced)])
+    found = dict.fromkeys(
+        [*named.places, *(s for editor in editors.values() for s in editor.replaced)]
+    )
     return list(found)
 
 
@@ -283,11 +289,11 @@ def script_path(machine: Machine, body: Body, path: str) -> str | None:
         return machine.root.name
     first = body.states[0].name if body.states else None
     inside: str | None = None
-    for each in walk_script(machine.root):
-        if _is_at(each.node.span, body.name, path):
-            return each.plain
-        if first is not None and inside is None and _is_at(each.node.span, first, path):
-            inside = _above(each)
+    for other in walk_script(machine.root):
+        if _is_at(other.node.span, body.name, path):
+            return other.plain
+        if first is not None and inside is None and _is_at(other.node.span, first, path):
+            inside = _above(other)
     return inside
 
 

@@ -49,9 +49,9 @@ class Body:
         if entry is None or not isinstance(entry.value, Map):
             return {}
         return {
-            str(each.key.value): str(each.value.value)
-            for each in entry.value.entries
-            if isinstance(each.value, Scalar) and each.value.value is not None
+            str(item.key.value): str(item.value.value)
+            for item in entry.value.entries
+            if isinstance(item.value, Scalar) and item.value.value is not None
         }
 
     @property
@@ -102,9 +102,9 @@ def names_in(tree: Tree) -> list[str]:
     """The names that a list or a mapping has."""
     match tree:
         case Seq(items=items):
-            return [str(each.value) for each in items if isinstance(each, Scalar)]
+            return [str(item.value) for item in items if isinstance(item, Scalar)]
         case Map(entries=entries):
-            return [str(each.key.value) for each in entries]
+            return [str(entry.key.value) for entry in entries]
     return []
 
 

@@ -43,7 +43,7 @@ ENDING = "smachacEND"
 """The value that completes a field without one."""
 
 _ENDINGS = tuple(
-    each.replace("x", ENDING) for each in ("", ": x", "}", "]", ": x}", "}]", "]}", "}}", ": x}}")
+    name.replace("x", ENDING) for name in ("", ": x", "}", "]", ": x}", "}]", "]}", "}}", ": x}}")
 )
 """What may complete the text after the cursor, in the order in which it is tried."""
 

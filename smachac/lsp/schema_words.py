@@ -53,12 +53,12 @@ def schema_words(text: str, start: int, end: int, view: View) -> list[Completion
 def _words(kind: FileKind, place: WordPlace, then: str, quoted: str) -> Iterator[Completion]:
     schemas = _at(schema_of(kind), place.steps)
     values: dict[str, Completion] = {}
-    for each in schemas if not place.is_key else ():
-        known = [*each.get("enum", ()), *each.get("examples", ())]
+    for schema in schemas if not place.is_key else ():
+        known = [*schema.get("enum", ()), *schema.get("examples", ())]
         for value in known:
             word = str(value)
             values.setdefault(word, Completion(word=word, kind="value", text=quoted.format(word)))
-        if "boolean" in each.get("type", ()):
+        if "boolean" in schema.get("type", ()):
             values |= {word: Completion(word=word, kind="value") for word in ("true", "false")}
     yield from values.values()
     for name, part in _properties(schemas):
@@ -83,9 +83,9 @@ def schema_hover(view: View, offset: int) -> tuple[str, WordPlace] | None:
     if part is None or "description" not in part:
         return None
     lines = [f"**{steps[-1]}**", str(part["description"])]
-    for each in _alternatives(part):
-        if "enum" in each:
-            lines.append(f"One of {', '.join(f'`{word}`' for word in each['enum'])}.")
+    for alternative in _alternatives(part):
+        if "enum" in alternative:
+            lines.append(f"One of {', '.join(f'`{word}`' for word in alternative['enum'])}.")
     if "default" in part and not isinstance(part["default"], bool):
         lines.append(f"Default: `{_shown(part['default'])}`.")
     return "\n\n".join(lines), place
@@ -94,7 +94,7 @@ def schema_hover(view: View, offset: int) -> tuple[str, WordPlace] | None:
 def _shown(value: object) -> str:
     """A value as YAML in one line."""
     if isinstance(value, list | tuple):
-        return f"[{', '.join(_shown(each) for each in value)}]"
+        return f"[{', '.join(_shown(item) for item in value)}]"
     return str(value)
 
 
@@ -102,15 +102,15 @@ def _alternatives(schema: Schema) -> Iterator[Schema]:
     """A schema, those of which one must hold, and those of both cases of a condition."""
     yield schema
     cases = (schema[key] for key in ("then", "else") if key in schema)
-    for each in (*schema.get("anyOf", ()), *cases):
-        yield from _alternatives(each)
+    for case_ in (*schema.get("anyOf", ()), *cases):
+        yield from _alternatives(case_)
 
 
 def _at(schema: Schema, steps: Iterable[str]) -> list[Schema]:
     """The schemas of the value behind some steps."""
     found = [*_alternatives(schema)]
     for step in steps:
-        found = [part for each in found for below in _below(each, step)
+        found = [part for entry in found for below in _below(entry, step)
                  for part in _alternatives(below)]  # fmt: skip
     return found
 
@@ -125,8 +125,8 @@ def _below(schema: Schema, step: str) -> list[Schema]:
 
 
 def _properties(schemas: Iterable[Schema]) -> Iterator[tuple[str, Schema]]:
-    for each in schemas:
-        yield from each.get("properties", {}).items()
+    for schema in schemas:
+        yield from schema.get("properties", {}).items()
 
 
 def yaml_place(tree: Tree | None, offset: int) -> WordPlace | None:
@@ -139,15 +139,15 @@ def yaml_place(tree: Tree | None, offset: int) -> WordPlace | None:
                 place = WordPlace(start=start, end=end, steps=tuple(steps), is_key=False)
                 return place if inside else None
             case Seq(items=items):
-                tree = next((each for each in items[::-1] if each.span.start <= offset), None)
+                tree = next((item for item in items[::-1] if item.span.start <= offset), None)
                 steps.append(ITEM)
             case Map(entries=entries):
-                entry = next((each for each in entries[::-1] if each.key.start <= offset), None)
+                entry = next((entry for entry in entries[::-1] if entry.key.start <= offset), None)
                 if entry is None:
                     return None
                 key = entry.key
                 if offset <= key.end:
-                    names = frozenset(str(each.key.value) for each in entries) - {str(key.value)}
+                    names = frozenset(str(entry.key.value) for entry in entries) - {str(key.value)}
                     return WordPlace(start=key.start, end=key.end, steps=tuple(steps), is_key=True,
                                      siblings=names)  # fmt: skip
                 steps.append(str(key.value))
@@ -200,8 +200,11 @@ def toml_place(text: str, offset: int) -> WordPlace | None:
         last = max(text.rfind("{", first, start), text.rfind(",", first, start)) + 1
         inner = _KEY.match(text[last:start])
         if inner is None:
-            close = min(each for each in (text.find("}", start), text.find("\n", start), len(text))
-                        if each >= 0)  # fmt: skip
+            close = min(
+                number
+                for number in (text.find("}", start), text.find("\n", start), len(text))
+                if number >= 0
+            )
             others = _INLINE_KEY.finditer(text, first, close)
             return _key_place(text, last, (start, end), steps, others)
         steps = (*steps, *_names(inner[1]))
@@ -224,12 +227,12 @@ def _key_place(
     if dotted is None:
         return None
     prefix = _names(dotted[1].removesuffix("."))
-    beside = (_names(each[1]) for each in others if not each.start(1) <= start <= each.end(1))
-    names = frozenset(each[len(prefix)] for each in beside
-                      if len(each) > len(prefix) and each[: len(prefix)] == prefix)  # fmt: skip
+    beside = (_names(other[1]) for other in others if not other.start(1) <= start <= other.end(1))
+    names = frozenset(row[len(prefix)] for row in beside
+                      if len(row) > len(prefix) and row[: len(prefix)] == prefix)  # fmt: skip
     return WordPlace(start=start, end=end, steps=(*table, *prefix), is_key=True, siblings=names)
 
 
 def _names(dotted: str) -> tuple[str, ...]:
     """The names of a dotted key."""
-    return tuple(each.strip(" \t\"'") for each in dotted.split(".")) if dotted.strip() else ()
+    return tuple(part.strip(" \t\"'") for part in dotted.split(".")) if dotted.strip() else ()

@@ -133,12 +133,12 @@ class Server(LanguageServer):
         cleared."""
         found = self.session.check(path)
         before = self.published.get(path, frozenset())
-        others = {each for other, files in self.published.items() if other != path
-                  for each in files}  # fmt: skip
+        others = {file for other, files in self.published.items() if other != path
+                  for file in files}  # fmt: skip
         for file in (*found, *(before - found.keys() - others)):
             if file != path and file in self.session.open:
                 continue  # it has a check of its own
-            items = [self.diagnostic(each) for each in found.get(file, [])]
+            items = [self.diagnostic(diagnostic) for diagnostic in found.get(file, [])]
             self.text_document_publish_diagnostics(
                 lsp.PublishDiagnosticsParams(
                     uri=self.uri_of(file), diagnostics=items, version=self.versions.get(file)
@@ -149,7 +149,7 @@ class Server(LanguageServer):
     def diagnostic(self, item: Diagnostic) -> lsp.Diagnostic:
         span = item.span
         texts = filter(None, (item.message, item.effect, item.help))
-        related = [(each.span, each.message) for each in item.related]
+        related = [(related.span, related.message) for related in item.related]
         related += [(at, f"on the path: {step.label}")
                     for step, at in zip(item.finding.path, item.steps, strict=False)
                     if at is not None]  # fmt: skip
@@ -215,9 +215,9 @@ def _documents(server: Server) -> None:
 
     @server.feature(lsp.INITIALIZE)
     def initialize(params: lsp.InitializeParams) -> None:
-        folders = [each.uri for each in params.workspace_folders or ()]
+        folders = [folder.uri for folder in params.workspace_folders or ()]
         folders = folders or ([params.root_uri] if params.root_uri else [])
-        named = [name for each in folders if (name := to_fs_path(each)) is not None]
+        named = [name for folder in folders if (name := to_fs_path(folder)) is not None]
         server.session = Session([Path(name) for name in named])
 
     @server.feature(lsp.INITIALIZED)
@@ -284,14 +284,14 @@ def _words(server: Server) -> None:
             found = complete(text, offset, path, view)
             items = [
                 lsp.CompletionItem(
-                    label=each.word,
-                    kind=COMPLETION_KINDS[each.kind],
-                    detail=each.detail or None,
-                    documentation=each.doc or None,
+                    label=completion.word,
+                    kind=COMPLETION_KINDS[completion.kind],
+                    detail=completion.detail or None,
+                    documentation=completion.doc or None,
                     sort_text=f"{number:05}",
-                    insert_text=each.text or each.word,
+                    insert_text=completion.text or completion.word,
                 )
-                for number, each in enumerate(found)
+                for number, completion in enumerate(found)
             ]
             return lsp.CompletionList(is_incomplete=False, items=items)
 
@@ -369,7 +369,7 @@ def _structure(server: Server) -> None:
                     children=[convert(inner) for inner in each.children],
                 )
 
-            return [convert(each) for each in symbols.symbols(view.tree)]
+            return [convert(symbol) for symbol in symbols.symbols(view.tree)]
 
         return server.ask(params.text_document.uri, answer)
 
@@ -379,12 +379,12 @@ def _structure(server: Server) -> None:
         with deep_recursion():
             for source, tree in server.session.texts():
                 at = server.positions(source)
-                for each, above in symbols.all_symbols(symbols.symbols(tree)):
-                    if params.query.lower() in each.name.lower():
+                for symbol, above in symbols.all_symbols(symbols.symbols(tree)):
+                    if params.query.lower() in symbol.name.lower():
                         uri = server.uri_of(os.path.realpath(source.name))
-                        where = server.range(at, each.name_start, each.name_end)
+                        where = server.range(at, symbol.name_start, symbol.name_end)
                         found.append(lsp.WorkspaceSymbol(
-                            name=each.name, kind=_symbol_kind(each), container_name=above,
+                            name=symbol.name, kind=_symbol_kind(symbol), container_name=above,
                             location=lsp.Location(uri=uri, range=where)))  # fmt: skip
         return found
 
@@ -425,10 +425,10 @@ def _additions(server: Server) -> None:
             at = server.positions(view.source)
             first, last = params.range.start.line, params.range.end.line
             kinds = {True: lsp.InlayHintKind.Type, False: None}
-            found = [(at.at(each.offset), each) for each in hints(view, path)]
-            return [lsp.InlayHint(position=lsp.Position(*where), label=each.text,
-                                  kind=kinds[each.is_type])
-                    for where, each in found if first <= where[0] <= last]  # fmt: skip
+            found = [(at.at(hint.offset), hint) for hint in hints(view, path)]
+            return [lsp.InlayHint(position=lsp.Position(*where), label=hint.text,
+                                  kind=kinds[hint.is_type])
+                    for where, hint in found if first <= where[0] <= last]  # fmt: skip
 
         return server.ask(params.text_document.uri, answer)
 
@@ -548,12 +548,12 @@ def _code_actions(server: Server) -> None:
             if view.machine is not None and roots:
                 place = place_at(view.tree, start)
                 chosen = actions.selected_states(place, start, max(end, start + 1))
-                for each in actions.offers(place, chosen, view.machine, path):
-                    kind = (lsp.CodeActionKind.RefactorInline if each.kind == "inline"
+                for offer in actions.offers(place, chosen, view.machine, path):
+                    kind = (lsp.CodeActionKind.RefactorInline if offer.kind == "inline"
                             else lsp.CodeActionKind.RefactorExtract)  # fmt: skip
-                    data = {"kind": each.kind, "name": each.name, "states": [*each.states],
+                    data = {"kind": offer.kind, "name": offer.name, "states": [*offer.states],
                             "root": roots[0]}  # fmt: skip
-                    found.append(lsp.CodeAction(title=each.title, kind=kind, data=data))
+                    found.append(lsp.CodeAction(title=offer.title, kind=kind, data=data))
             return found
 
         return server.ask(params.text_document.uri, answer)

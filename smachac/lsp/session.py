@@ -134,7 +134,7 @@ class Session:
         if key not in self._listed:
             try:
                 found = scripts_of(folders, self.disk)
-                self._listed[key] = [Path(os.path.realpath(each)) for each in found]
+                self._listed[key] = [Path(os.path.realpath(path)) for path in found]
             except NothingFoundError:
                 self._listed[key] = []
         return self._listed[key]
@@ -144,8 +144,8 @@ class Session:
         view = self.view(path)
         found = [self._contexts[root][1] for root in self._known_roots(path)]
         mine = [view.context] if view is not None else []
-        contexts = {id(each): each for each in [*mine, *found] if each is not None}
-        return [each.machine for each in contexts.values()]
+        contexts = {id(context): context for context in [*mine, *found] if context is not None}
+        return [context.machine for context in contexts.values()]
 
     def script_roots(self, path: str) -> list[str]:
         """The scripts, not sub-scripts, by which a text is checked."""
@@ -182,9 +182,9 @@ class Session:
         """The scripts around a sub-script whose text names it, directly or through another one."""
         folders = [folder for folder in self.folders if Path(path).is_relative_to(folder)]
         texts = {}
-        for each in self._scripts([*folders, Path(path).parent]):
-            source = self.disk.read(each, [])
-            texts[str(each)] = source.text if source is not None else ""
+        for script in self._scripts([*folders, Path(path).parent]):
+            source = self.disk.read(script, [])
+            texts[str(script)] = source.text if source is not None else ""
         found = {path: None}
         todo = [path]
         while todo:
@@ -245,7 +245,7 @@ class Session:
         """Whether a file is the interface of a state type: it is in a folder of templates."""
         folder = Path(path).parent
         project = find_project(Path(path), [], self.disk)
-        named = [os.path.realpath(each) for each in project.templates]
+        named = [os.path.realpath(template) for template in project.templates]
         return folder.name == "templates" or str(folder) in named
 
     def _check_interface(self, path: str) -> dict[str, Report]:
@@ -280,8 +280,8 @@ class Session:
     def users(self, path: str) -> list[str]:
         """The other open texts whose check uses a file."""
         roots = {*self._roots_using({path})}
-        return [each for each in self.open if each != path
-                and (each in roots or any(each in self._uses[root] for root in roots))]  # fmt: skip
+        return [text for text in self.open if text != path
+                and (text in roots or any(text in self._uses[root] for root in roots))]  # fmt: skip
 
     def _check_scripts(self, roots: list[str]) -> Batch:
         """Check scripts, and keep their machines with the facts that the rules computed."""
@@ -341,7 +341,7 @@ class Session:
         if isinstance(tree, Map):
             machine = read_machine(made, library, [])
         elif isinstance(tree, Seq):
-            root = next((each for each in self.roots(path) if each != path), None)
+            root = next((root for root in self.roots(path) if root != path), None)
             main = self.disk.read(Path(root), []) if root is not None else None
             if main is not None:
                 library = self._library(main.name)

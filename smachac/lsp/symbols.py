@@ -54,9 +54,11 @@ def _symbol(body: Body) -> Symbol:
 
 def all_symbols(found: list[Symbol], above: str = "") -> Iterator[tuple[Symbol, str]]:
     """Symbols and those inside them, with the names of the containers around each."""
-    for each in found:
-        yield each, above
-        yield from all_symbols(list(each.children), f"{above}/{each.name}" if above else each.name)
+    for symbol in found:
+        yield symbol, above
+        yield from all_symbols(
+            list(symbol.children), f"{above}/{symbol.name}" if above else symbol.name
+        )
 
 
 def folds(tree: Tree | None) -> list[tuple[int, int]]:
@@ -72,7 +74,7 @@ def folds(tree: Tree | None) -> list[tuple[int, int]]:
                         found[entry.key.start, _last(entry.value)] = None
                         todo.append(entry.value)
             case Seq(items=items):
-                todo += [each for each in items if not isinstance(each, Scalar)]
+                todo += [item for item in items if not isinstance(item, Scalar)]
     return sorted(found)
 
 
@@ -134,7 +136,7 @@ def _words(tree: Tree | None) -> Iterator[Scalar]:
             case Seq(items=items):
                 todo += items
             case Map(entries=entries):
-                todo += [each.value for each in entries]
+                todo += [entry.value for entry in entries]
 
 
 def first_line(source: Source) -> Span:

@@ -72,7 +72,7 @@ class _Call(NamedTuple):
     @property
     def positional(self) -> list[str]:
         """The parameters that accept arguments without a name, without `self`."""
-        return [each.arg for each in (*self.taken.posonlyargs, *self.taken.args)][1:]
+        return [argument.arg for argument in (*self.taken.posonlyargs, *self.taken.args)][1:]
 
 
 def base_call_faults(own: OwnClass) -> Iterator[ClassFault]:
@@ -93,19 +93,19 @@ def arguments_to_base(own: OwnClass) -> Mapping[str, tuple[PythonText, ast.expr]
     call = _base_call(own, 0, own.names[0]) if derived else None
     if call is None or call.base not in base.body or [*base_call_faults(own)]:
         return None
-    if call.node not in [each.value for each in call.maker.body if isinstance(each, ast.Expr)]:
+    if call.node not in [node.value for node in call.maker.body if isinstance(node, ast.Expr)]:
         return None
     taken, text = call.taken, last.text
-    names = [each.arg for each in (*taken.posonlyargs, *taken.args)]
+    names = [argument.arg for argument in (*taken.posonlyargs, *taken.args)]
     pairs = [*zip(reversed(names), reversed(taken.defaults), strict=False)]
-    pairs += [(each.arg, default) for each, default in
+    pairs += [(argument.arg, default) for argument, default in
               zip(taken.kwonlyargs, taken.kw_defaults, strict=True) if default]  # fmt: skip
     found = {name: (text, default) for name, default in pairs}
     given = [*zip(call.positional, call.arguments, strict=False)]
-    given += [(each.arg or "", each.value) for each in call.node.keywords]
+    given += [(keyword.arg or "", keyword.value) for keyword in call.node.keywords]
     found |= {name: (call.module.text, value) for name, value in given}
-    for each in walk_code(call.base):
-        match each:
+    for node in walk_code(call.base):
+        match node:
             case (
                 ast.Name(id=name, ctx=ast.Store() | ast.Del())
                 | ast.Attribute(value=ast.Name(id=name))
@@ -132,15 +132,15 @@ def _base_call(own: OwnClass, at: int, names: Names) -> _Call | None:
     taken = _maker(own.names[base]) if base is not None else None
     if maker is None or base is None or taken is None or maker not in node.body:
         return None
-    me = [each.arg for each in (*maker.args.posonlyargs, *maker.args.args)][:1]
-    calls = [(each, _arguments(each, node, own.classes[base][1], me))
-             for each in walk_code(maker) if isinstance(each, ast.Call)]  # fmt: skip
-    found = [(each, given) for each, given in calls if given is not None]
+    me = [argument.arg for argument in (*maker.args.posonlyargs, *maker.args.args)][:1]
+    calls = [(call, _arguments(call, node, own.classes[base][1], me))
+             for call in walk_code(maker) if isinstance(call, ast.Call)]  # fmt: skip
+    found = [(call, given) for call, given in calls if given is not None]
     if len(found) != 1 or taken not in own.classes[base][1].body:
         return None
     call, arguments = found[0]
-    open_ = any(isinstance(each, ast.Starred) for each in arguments)
-    open_ = open_ or any(each.arg is None for each in call.keywords)
+    open_ = any(isinstance(argument, ast.Starred) for argument in arguments)
+    open_ = open_ or any(keyword.arg is None for keyword in call.keywords)
     if open_ or module.text.is_filled(module.text.span(call)):
         return None
     return _Call(module, maker, call, arguments, own.classes[base][1].name, taken)
@@ -153,7 +153,7 @@ def _arguments(
     calls."""
     match call.func:
         case ast.Attribute(value=ast.Call(func=ast.Name(id="super"), args=given), attr="__init__"):
-            names = [each.id for each in given if isinstance(each, ast.Name)]
+            names = [name.id for name in given if isinstance(name, ast.Name)]
             known = not given or names == [node.name, *me]
             first = call.args[0] if call.args else None
             again = isinstance(first, ast.Name) and [first.id] == me
@@ -168,11 +168,11 @@ def _arguments(
 def _name_faults(call: _Call) -> Iterator[ClassFault]:
     """The arguments of a name that the constructor does not have, or that it gets twice."""
     text = call.module.text
-    by_name = [each.arg for each in (*call.taken.args, *call.taken.kwonlyargs)]
+    by_name = [argument.arg for argument in (*call.taken.args, *call.taken.kwonlyargs)]
     by_name = [name for name in by_name if name not in ("self",)]
     passed = {*call.positional[: len(call.arguments)]}
     free = [name for name in by_name if name not in passed]
-    given = {each.arg for each in call.node.keywords}
+    given = {keyword.arg for keyword in call.node.keywords}
     for keyword in call.node.keywords:
         name = keyword.arg or ""
         start = text.offset(keyword.lineno, keyword.col_offset)
@@ -180,7 +180,7 @@ def _name_faults(call: _Call) -> Iterator[ClassFault]:
         if name in passed and name in by_name:
             yield ClassFault(kind=ARGUMENT_TWICE, name=word, owner=call.owner)
         elif name not in by_name and call.taken.kwarg is None:
-            near = guesser([each for each in free if each not in given])(name)
+            near = guesser([text for text in free if text not in given])(name)
             yield ClassFault(kind=NO_BASE_ARGUMENT, name=word, near=near, owner=call.owner,
                              more=_in_order(by_name))  # fmt: skip
 
@@ -199,14 +199,14 @@ def _count_faults(call: _Call) -> Iterator[ClassFault]:
         yield ClassFault(kind=TOO_MANY_ARGUMENTS, name=word, owner=call.owner, more=more)
         return
     due = positional[: len(positional) - len(call.taken.defaults)]
-    due += [each.arg for each, default in
+    due += [argument.arg for argument, default in
             zip(call.taken.kwonlyargs, call.taken.kw_defaults, strict=True)
             if default is None]  # fmt: skip
-    given = {*positional[: len(call.arguments)], *(each.arg for each in call.node.keywords)}
+    given = {*positional[: len(call.arguments)], *(keyword.arg for keyword in call.node.keywords)}
     missing = [name for name in due if name not in given]
     if missing:
         span = text.span(call.node.func)
-        by_name = [*positional, *(each.arg for each in call.taken.kwonlyargs)]
+        by_name = [*positional, *(argument.arg for argument in call.taken.kwonlyargs)]
         yield ClassFault(kind=MISSING_BASE_ARGUMENT, name=Word(span.text, span),
                          near=_in_order(by_name),
                          owner=call.owner, more=listed(missing))  # fmt: skip
@@ -221,8 +221,13 @@ def _other_lists(own: OwnClass, call: _Call) -> Iterator[ClassFault]:
              if (texts := _texts(value))}  # fmt: skip
     if found is None or "outcomes" not in lists:
         return
-    returned = {each.value for line in returns_of(found[1].body) if line.value is not None
-                for each in alternatives(line.value) if isinstance(each, ast.Constant)}  # fmt: skip
+    returned = {
+        alternative.value
+        for line in returns_of(found[1].body)
+        if line.value is not None
+        for alternative in alternatives(line.value)
+        if isinstance(alternative, ast.Constant)
+    }
     wrong, given = lists["outcomes"]
     other = next((name for name, (_, texts) in lists.items() if texts & returned), None)
     if other is not None and given.isdisjoint(returned):
@@ -240,7 +245,7 @@ def _other_lists(own: OwnClass, call: _Call) -> Iterator[ClassFault]:
 def _texts(node: ast.expr) -> set[object]:
     """The texts in a list; none for another expression."""
     items = node.elts if isinstance(node, ast.List | ast.Tuple) else ()
-    return {each.value for each in items if isinstance(each, ast.Constant)}
+    return {item.value for item in items if isinstance(item, ast.Constant)}
 
 
 def copied(node: ast.expr) -> ast.expr:

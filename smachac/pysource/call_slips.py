@@ -99,9 +99,9 @@ def call_slips(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
         for method in node.body:
             if not isinstance(method, ast.FunctionDef):
                 continue
-            every = [each for each in walk_code(method) if each not in others]
+            every = [node for node in walk_code(method) if node not in others]
             tried = tried_code(every)
-            every = [each for each in every if each not in tried]
+            every = [node for node in every if node not in tried]
             code = _MethodCode(own, module, node, method, every, objects)
             found = [
                 *_called_early(code),
@@ -109,7 +109,7 @@ def call_slips(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
                 *_no_modules(module, method, every, library),
                 *_wrong_counts(code),
             ]
-            yield from (each for each in found if not module.text.is_filled(each.name.span))
+            yield from (fault for fault in found if not module.text.is_filled(fault.name.span))
 
 
 # --- a call in place of a function
@@ -118,15 +118,15 @@ def call_slips(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
 def _called_early(code: _MethodCode) -> Iterator[ClassFault]:
     """The calls of functions without a result that are passed where the function is needed."""
     own, module, node, method, every, objects = code
-    for each in every:
-        match each:
+    for inner in every:
+        match inner:
             case ast.Call(func=ast.Attribute(attr=name) | ast.Name(id=name)) if name in TAKERS:
                 pass
             case _:
                 continue
         at, keyword = TAKERS[name]
-        given = [value.value for value in each.keywords if value.arg in (keyword, "callback")]
-        given += each.args[at : at + 1]
+        given = [value.value for value in inner.keywords if value.arg in (keyword, "callback")]
+        given += inner.args[at : at + 1]
         for call in given:
             if not isinstance(call, ast.Call) or isinstance(call.func, ast.Call):
                 continue
@@ -139,7 +139,7 @@ def _called_early(code: _MethodCode) -> Iterator[ClassFault]:
             near = module.text.span(call.func).text
             if call.args or call.keywords:
                 near = f"lambda{'' if name in WITHOUT_ARGUMENTS else ' *_'}: {text}"
-            more = module.text.span(each.func).text
+            more = module.text.span(inner.func).text
             yield ClassFault(kind=CALLED_EARLY, name=Word(text, span), near=near, more=more)
 
 
@@ -157,7 +157,7 @@ def _called_code(code: _MethodCode, call: ast.Call) -> ast.FunctionDef | None:
         return None
     head = call.func.value if isinstance(call.func, ast.Attribute) else None
     of_object = function is None or (isinstance(head, ast.Name) and head.id == "self")
-    first = [each.arg for each in (*called.args.posonlyargs, *called.args.args)][:1]
+    first = [argument.arg for argument in (*called.args.posonlyargs, *called.args.args)][:1]
     return called if of_object == (first == ["self"]) else None
 
 
@@ -165,7 +165,7 @@ def _takes_self(call: ast.Call, function: ast.FunctionDef) -> bool:
     """Whether the first parameter of a function is the object of the call."""
     taken = [*function.args.posonlyargs, *function.args.args]
     bound = isinstance(call.func, ast.Attribute) or function.name == "__init__"
-    return bound and [each.arg for each in taken[:1]] == ["self"]
+    return bound and [argument.arg for argument in taken[:1]] == ["self"]
 
 
 def _constructor(module: Module, called: ast.expr, library: UserCode) -> ast.FunctionDef | None:
@@ -185,32 +185,36 @@ def _wrong_counts(code: _MethodCode) -> Iterator[ClassFault]:
     function does not have."""
     module = code.module
     for call in code.nodes:
-        if not isinstance(call, ast.Call) or any(each.arg is None for each in call.keywords):
+        if not isinstance(call, ast.Call) or any(keyword.arg is None for keyword in call.keywords):
             continue
-        if any(isinstance(each, ast.Starred) for each in call.args):
+        if any(isinstance(argument, ast.Starred) for argument in call.args):
             continue
         called = _called_code(code, call)
         if called is None:
             continue
         taken = called.args
-        names = [each.arg for each in (*taken.posonlyargs, *taken.args)]
+        names = [argument.arg for argument in (*taken.posonlyargs, *taken.args)]
         due = names[: len(names) - len(taken.defaults)]
         if _takes_self(call, called):
             names, due = names[1:], due[1:]
         pairs = zip(taken.kwonlyargs, taken.kw_defaults, strict=True)
-        due += [each.arg for each, default in pairs if default is None]
-        passed = {*names[: len(call.args)], *(each.arg for each in call.keywords)}
+        due += [argument.arg for argument, default in pairs if default is None]
+        passed = {*names[: len(call.args)], *(keyword.arg for keyword in call.keywords)}
         missing = [name for name in due if name not in passed]
         span = module.text.span(call)
         head = " ".join(module.text.span(call.func).text.split())
-        by_name = [each.arg for each in (*taken.args, *taken.kwonlyargs)]
-        unknown = [each.arg for each in call.keywords if each.arg and each.arg not in by_name]
-        signature = f"{head}({', '.join([*names, *(each.arg for each in taken.kwonlyargs)])})"
+        by_name = [argument.arg for argument in (*taken.args, *taken.kwonlyargs)]
+        unknown = [
+            keyword.arg for keyword in call.keywords if keyword.arg and keyword.arg not in by_name
+        ]
+        signature = (
+            f"{head}({', '.join([*names, *(argument.arg for argument in taken.kwonlyargs)])})"
+        )
         is_base = called.name == "__init__" and isinstance(call.func, ast.Attribute)
         if unknown and taken.kwarg is None and not is_base:
             free = [name for name in by_name if name not in passed and name != "self"]
             near = guesser(free)(unknown[0]) or (free[0] if len(free) == 1 else None)
-            keyword = next(each for each in call.keywords if each.arg == unknown[0])
+            keyword = next(keyword for keyword in call.keywords if keyword.arg == unknown[0])
             start = module.text.offset(keyword.lineno, keyword.col_offset)
             place = Span(module.text.source, start, start + len(unknown[0]))
             word = Word(unknown[0], place)
@@ -230,8 +234,8 @@ def _wrong_counts(code: _MethodCode) -> Iterator[ClassFault]:
 
 def _wrong_numbers(module: Module, every: Sequence[ast.AST]) -> Iterator[ClassFault]:
     """The texts with another number of places than values: `"%s of %s" % (a,)`."""
-    for each in every:
-        match each:
+    for node in every:
+        match node:
             case ast.BinOp(
                 op=ast.Mod(), left=ast.Constant(value=str() as text), right=ast.Tuple(elts=values)
             ):
@@ -250,7 +254,7 @@ def _wrong_numbers(module: Module, every: Sequence[ast.AST]) -> Iterator[ClassFa
         if given == places or (given > places and not exact):
             continue
         error = "TypeError" if exact else "IndexError"
-        span = module.text.span(each)
+        span = module.text.span(node)
         yield ClassFault(
             kind=NUMBER_OF_VALUES,
             name=Word(error, span),
@@ -275,7 +279,7 @@ def _fields(text: str) -> int | None:
     """The number of values that `format` needs for a text, all of whose fields have no name and no
     number; None for another text."""
     inner = [found[1] for found in _FIELD.finditer(text) if found[1] is not None]
-    plain = all(re.match(r"(?:$|[.\[!:])", each) for each in inner)
+    plain = all(re.match(r"(?:$|[.\[!:])", value) for value in inner)
     rest = _FIELD.sub("", text)
     return len(inner) if plain and "{" not in rest and "}" not in rest else None
 
@@ -289,8 +293,8 @@ def _no_modules(
     """The names of modules of Python's library under which the file imports a function or class of
     the module: `from time import time`, and then `time.sleep(1)`."""
     done = set[str]()
-    for each in every:
-        match each:
+    for node in every:
+        match node:
             case ast.Attribute(value=ast.Name(id=name) as head, attr=attribute) if name in MODULES:
                 pass
             case _:
@@ -328,7 +332,7 @@ def _no_modules(
 def _is_local(method: ast.FunctionDef, name: str) -> bool:
     """Whether a method binds a name itself."""
     return any(
-        (isinstance(each, ast.arg) and each.arg == name)
-        or (isinstance(each, ast.Name) and each.id == name and not isinstance(each.ctx, ast.Load))
-        for each in walk_code(method)
+        (isinstance(node, ast.arg) and node.arg == name)
+        or (isinstance(node, ast.Name) and node.id == name and not isinstance(node.ctx, ast.Load))
+        for node in walk_code(method)
     )

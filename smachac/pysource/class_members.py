@@ -31,18 +31,18 @@ def missing_constants(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
     for module, node in own.classes:
         every = [*walk_code(node)]
         tried, bound = caught(node), _bound(every)
-        quoted = {each.value for each in every if isinstance(each, ast.Constant)}
+        quoted = {constant.value for constant in every if isinstance(constant, ast.Constant)}
         known: dict[str, tuple[Module, ast.ClassDef] | None] = {}
-        for each in every:
-            match each:
+        for inner in every:
+            match inner:
                 case ast.Attribute(value=ast.Name(id=name), attr=member, ctx=ast.Load()) if (
                     name[0].isupper()  # others are modules and variables, which cost time
                 ):
                     pass
                 case _:
                     continue
-            span = module.text.span(each)
-            if name in bound or each in tried or member in quoted or (name, member) in done:
+            span = module.text.span(inner)
+            if name in bound or inner in tried or member in quoted or (name, member) in done:
                 continue
             if name not in known:
                 known[name] = _class(module, name, library)
@@ -60,9 +60,9 @@ def missing_constants(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
 
 def _bound(every: list[ast.AST]) -> set[str]:
     """The names that the code of a class binds itself."""
-    return {each.id for each in every
-            if isinstance(each, ast.Name) and not isinstance(each.ctx, ast.Load)} | {
-        each.arg for each in every if isinstance(each, ast.arg)
+    return {name.id for name in every
+            if isinstance(name, ast.Name) and not isinstance(name.ctx, ast.Load)} | {
+        argument.arg for argument in every if isinstance(argument, ast.arg)
     }  # fmt: skip
 
 
@@ -80,18 +80,18 @@ def _class(module: Module, name: str, library: UserCode) -> tuple[Module, ast.Cl
 
 def _kind(module: Module, node: ast.ClassDef) -> str | None:
     """The class of the module `enum` that a class is derived from directly; None for others."""
-    decorators = {ast.unparse(each).rpartition(".")[2] for each in node.decorator_list}
+    decorators = {ast.unparse(inner).rpartition(".")[2] for inner in node.decorator_list}
     if node.keywords or not node.bases or not decorators <= {"unique"}:
         return None
     *first, last = node.bases
-    if not all(isinstance(each, ast.Name) and each.id in VALUES for each in first):
+    if not all(isinstance(node, ast.Name) and node.id in VALUES for node in first):
         return None
     match last:
         case ast.Name(id=name):
             bound = module.names.get(name, ())
-            known = [isinstance(each, ast.ImportFrom) and each.module == "enum" for each in bound]
+            known = [isinstance(node, ast.ImportFrom) and node.module == "enum" for node in bound]
         case ast.Attribute(value=ast.Name(id="enum"), attr=name):
-            known = [isinstance(each, ast.Import) for each in module.names.get("enum", ())]
+            known = [isinstance(name, ast.Import) for name in module.names.get("enum", ())]
         case _:
             return None
     return name if name in KINDS and known == [True] else None
@@ -103,15 +103,15 @@ def _has(module: Module, node: ast.ClassDef, member: str) -> bool:
     if member.startswith("_") or (kind is not None and member in ("name", "value")):
         return True
     bases: list[type] = [getattr(enum, kind, str), enum.EnumMeta] if kind is not None else [type]
-    bases += [getattr(builtins, each.id) for each in node.bases
-              if isinstance(each, ast.Name) and each.id in VALUES]  # fmt: skip
+    bases += [getattr(builtins, base.id) for base in node.bases
+              if isinstance(base, ast.Name) and base.id in VALUES]  # fmt: skip
     if kind == "StrEnum":
         bases.append(str)
-    return member in members_of(node)[0] or any(hasattr(each, member) for each in bases)
+    return member in members_of(node)[0] or any(hasattr(base, member) for base in bases)
 
 
 def _constants(node: ast.ClassDef) -> list[str]:
     """The public names that the body of a class gives a value, in their order."""
-    found = [target.id for each in node.body if isinstance(each, ast.Assign)
-             for target in each.targets if isinstance(target, ast.Name)]  # fmt: skip
+    found = [target.id for inner in node.body if isinstance(inner, ast.Assign)
+             for target in inner.targets if isinstance(target, ast.Name)]  # fmt: skip
     return [name for name in dict.fromkeys(found) if not name.startswith("_")]

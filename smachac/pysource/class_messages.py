@@ -116,7 +116,7 @@ def _keyword(module: Module, node: ast.keyword, name: str) -> Word:
 
 
 def _kind(folder: str) -> DefinitionKind | None:
-    return next((each for each in PARTS if each == folder), None)
+    return next((part for part in PARTS if part == folder), None)
 
 
 def _is_class(name: str) -> bool:
@@ -137,7 +137,7 @@ def _attributes(module: Module, names: _Names) -> Iterator[tuple[MessageRef, Wor
 
 def _is_bound_again(module: Module, names: _Names) -> bool:
     """Whether a module gives one of the names of types another meaning."""
-    known = {each.partition(".")[0] for each in (*names.types, *names.modules)}
+    known = {type_.partition(".")[0] for type_ in (*names.types, *names.modules)}
     return not (known.isdisjoint(module.variables) and known.isdisjoint(module.definitions))
 
 
@@ -146,14 +146,14 @@ def _callbacks(node: ast.ClassDef, names: _Names) -> Mapping[str, MessageRef]:
     nothing else in the class uses."""
     found: dict[str, MessageRef] = {}
     used: Counter[str] = Counter()
-    for each in walk_code(node):
-        match each:
+    for inner in walk_code(node):
+        match inner:
             case ast.Attribute(value=ast.Name(id="self"), attr=name):
                 used[name] += 1
             case ast.Call(func=ast.Name(id=called) | ast.Attribute(attr=called)):
-                given = [*each.args, *(one.value for one in each.keywords)]
+                given = [*inner.args, *(one.value for one in inner.keywords)]
                 types = [one for one in map(names.type_of, given) if one is not None]
-                raw = any(one.arg in ("raw", None) for one in each.keywords)
+                raw = any(one.arg in ("raw", None) for one in inner.keywords)
                 if called not in SUBSCRIBES or len(types) != 1 or raw:
                     continue
                 for one in given:
@@ -173,18 +173,18 @@ def _with_function(
     """The facts with those about one method."""
     if module.text.is_filled(module.text.span(function)):
         return found
-    nodes = [each for line in function.body for each in walk_code(line)]
+    nodes = [node for line in function.body for node in walk_code(line)]
     keywords = [
-        (ref, tuple(_keyword(module, one, one.arg) for one in each.keywords if one.arg))
-        for each in nodes
-        if isinstance(each, ast.Call) and not each.args
-        and (ref := names.type_of(each.func)) is not None
+        (ref, tuple(_keyword(module, one, one.arg) for one in node.keywords if one.arg))
+        for node in nodes
+        if isinstance(node, ast.Call) and not node.args
+        and (ref := names.type_of(node.func)) is not None
     ]  # fmt: skip
     arguments = [*function.args.posonlyargs, *function.args.args]
     known = {
-        each.arg: ref
-        for each in (*arguments, *function.args.kwonlyargs)
-        if (ref := names.type_of(each.annotation)) is not None
+        argument.arg: ref
+        for argument in (*arguments, *function.args.kwonlyargs)
+        if (ref := names.type_of(argument.annotation)) is not None
     }
     if function.name in callbacks and len(arguments) >= 2:
         known.setdefault(arguments[1].arg, callbacks[function.name])
@@ -194,19 +194,19 @@ def _with_function(
     uses = argument_uses(nodes, own, module.text.span)
     contents = found.uses if not known else (*found.uses, (tuple(known.items()), uses))
     return found._replace(
-        uses=contents, calls=(*found.calls, *(each for each in keywords if each[1]))
+        uses=contents, calls=(*found.calls, *(keyword for keyword in keywords if keyword[1]))
     )
 
 
 def _variables(nodes: Sequence[ast.AST], names: _Names) -> Iterator[tuple[str, MessageRef]]:
     """The local variables whose only value is a message of a known type."""
     stored = Counter(
-        each.id
-        for each in nodes
-        if isinstance(each, ast.Name) and not isinstance(each.ctx, ast.Load)
+        node.id
+        for node in nodes
+        if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load)
     )
-    for each in nodes:
-        match each:
+    for node in nodes:
+        match node:
             case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call() as call):
                 pass
             case _:

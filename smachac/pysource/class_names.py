@@ -158,7 +158,7 @@ def undefined_names(
     every, names = module.nodes, module.identifiers
     if not MAKE_NAMES.isdisjoint(names):
         return []
-    anywhere = {name for each in every for name in _bound(each)} | BUILT_IN
+    anywhere = {name for node in every for name in _bound(node)} | BUILT_IN
     inner = node not in module.names.get(node.name, ())  # in a function: its names are visible
     shared = anywhere if inner else {*module.names, *BUILT_IN, *_declared_global(every)}
     near = _Near(own, module, every, anywhere, lists)
@@ -210,9 +210,9 @@ def _reached(own: OwnClass, method: str) -> set[str]:
         if name in found or function is None:
             continue
         found.add(name)
-        todo += [each.attr for each in walk_code(function[1])
-                 if isinstance(each, ast.Attribute) and isinstance(each.value, ast.Name)
-                 and each.value.id == "self"]  # fmt: skip
+        todo += [attribute.attr for attribute in walk_code(function[1])
+                 if isinstance(attribute, ast.Attribute) and isinstance(attribute.value, ast.Name)
+                 and attribute.value.id == "self"]  # fmt: skip
     return found
 
 
@@ -231,22 +231,24 @@ class _Near:
         constructor = own.method("__init__")
         self.given = _arguments(constructor[1]) if constructor is not None else set()
         self.kept = {
-            each.value
-            for each in every
-            if isinstance(each, ast.Assign) and isinstance(each.value, ast.Name)
-            for target in each.targets
-            if isinstance(target, ast.Attribute) and target.attr == each.value.id
+            assignment.value
+            for assignment in every
+            if isinstance(assignment, ast.Assign) and isinstance(assignment.value, ast.Name)
+            for target in assignment.targets
+            if isinstance(target, ast.Attribute) and target.attr == assignment.value.id
         }
         execute = own.method("execute")
         positional = execute[1].args.args[1:] if execute is not None else []
         self.userdata = positional[0].arg if len(positional) == 1 else None
-        self.owners = {each.value for each in every if isinstance(each, ast.Attribute)}
-        self.called = {each.func for each in every if isinstance(each, ast.Call)}
+        self.owners = {
+            attribute.value for attribute in every if isinstance(attribute, ast.Attribute)
+        }
+        self.called = {call.func for call in every if isinstance(call, ast.Call)}
         self.texts = USUAL_OUTCOMES.union(
-            each.value
+            node.value
             for module, _ in own.classes
-            for each in module.nodes
-            if isinstance(each, ast.Constant) and isinstance(each.value, str)
+            for node in module.nodes
+            if isinstance(node, ast.Constant) and isinstance(node.value, str)
         )
         self.is_state = own.root == "state"
 
@@ -302,8 +304,11 @@ class _Near:
 
     def _early(self, node: ast.Name, word: Word, method: str) -> ClassFault:
         """The fault of the userdata in a method that runs before the state."""
-        attributes = (each.attr for each in self.every
-                      if isinstance(each, ast.Attribute) and each.value is node)  # fmt: skip
+        attributes = (
+            attribute.attr
+            for attribute in self.every
+            if isinstance(attribute, ast.Attribute) and attribute.value is node
+        )
         key = next(attributes, None)
         near = self.userdata or word.text
         near = f"{near}.{key}" if key is not None else near
@@ -312,7 +317,7 @@ class _Near:
     def _no_parameter(self, word: Word, method: Method) -> ClassFault | None:
         """The fault of `self` or the userdata in a method that has no such parameter."""
         text = self.module.text
-        given = [each.arg for each in method.args.args]
+        given = [argument.arg for argument in method.args.args]
         if method.name == "execute":
             if word.text == "self" or len(given) != 2:
                 return None  # a fault of the parameters of `execute`
@@ -338,29 +343,29 @@ class _Near:
         """A module that is not imported, at its first use in the file, or at the import of a module
         that nothing uses and whose name is one slip away."""
         text = self.module.text
-        used = {each.id for each in self.every if isinstance(each, ast.Name)}
-        for each in self.every:
-            for alias in each.names if isinstance(each, ast.Import) else ():
+        used = {name.id for name in self.every if isinstance(name, ast.Name)}
+        for node in self.every:
+            for alias in node.names if isinstance(node, ast.Import) else ():
                 written = alias.asname or alias.name
                 if written not in used and guesser([name]).sure(written) is not None:
                     start = text.offset(alias.lineno, alias.col_offset)
                     span = Span(text.source, start, start + len(alias.name))
                     return ClassFault(kind=WRONG_IMPORT, name=Word(alias.name, span), near=name)
-        uses = (text.span(each) for each in self.owners
-                if isinstance(each, ast.Name) and each.id == name)  # fmt: skip
+        uses = (text.span(owner) for owner in self.owners
+                if isinstance(owner, ast.Name) and owner.id == name)  # fmt: skip
         kind: FaultKind = NO_ROSPY_IMPORT if name == "rospy" else NO_IMPORT
-        return ClassFault(kind=kind, name=Word(name, min(uses, key=lambda each: each.start)))
+        return ClassFault(kind=kind, name=Word(name, min(uses, key=lambda use: use.start)))
 
 
 def _arguments(function: ast.FunctionDef) -> set[str]:
     """The names of the parameters of a function."""
-    return {each.arg for each in walk_code(function.args) if isinstance(each, ast.arg)}
+    return {argument.arg for argument in walk_code(function.args) if isinstance(argument, ast.arg)}
 
 
 def _declared_global(every: Iterable[ast.AST]) -> Iterator[str]:
-    for each in every:
-        if isinstance(each, ast.Global):
-            yield from each.names
+    for node in every:
+        if isinstance(node, ast.Global):
+            yield from node.names
 
 
 def _bound(node: ast.AST) -> Iterator[str]:
@@ -379,8 +384,8 @@ def _bound(node: ast.AST) -> Iterator[str]:
             yield name
         case ast.MatchStar(name=str(name)) | ast.MatchMapping(rest=str(name)):
             yield name
-    for each in getattr(node, "type_params", ()):
-        yield each.name
+    for item in getattr(node, "type_params", ()):
+        yield item.name
 
 
 def _evaluated(node: ast.AST) -> Iterator[ast.AST]:
@@ -408,8 +413,12 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
     if any(not DYNAMIC.isdisjoint(module.identifiers)
            or not LATE.isdisjoint(module.attributes["any"]) for module in modules):  # fmt: skip
         return []
-    defined |= {each.attr for _, node in own.classes for each in walk_code(node)
-                if isinstance(each, ast.Attribute) and isinstance(each.ctx, ast.Store)}  # fmt: skip
+    defined |= {
+        attribute.attr
+        for _, node in own.classes
+        for attribute in walk_code(node)
+        if isinstance(attribute, ast.Attribute) and isinstance(attribute.ctx, ast.Store)
+    }
     use: AttributeUse = "outside" if own.root == "state" else "stored"
     elsewhere = [names for module in modules
                  for names in (module.attributes[use], module.compared)]  # fmt: skip
@@ -418,33 +427,33 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
     found, unread = list[ClassFault](), _only_unread(own, modules)
     constructor = own.method("__init__")
     arguments = walk_code(constructor[1].args) if constructor is not None else ()
-    given = {each.arg for each in arguments if isinstance(each, ast.arg)}
+    given = {argument.arg for argument in arguments if isinstance(argument, ast.arg)}
     for module, node in own.classes:
         others = of_other_objects(node)
-        for each in _evaluated(node):
-            if not isinstance(each, ast.Attribute) or not _of_self(each) or each in others:
+        for inner in _evaluated(node):
+            if not isinstance(inner, ast.Attribute) or not _of_self(inner) or inner in others:
                 continue
-            if each.attr in defined or any(each.attr in names for names in elsewhere):
+            if inner.attr in defined or any(inner.attr in names for names in elsewhere):
                 continue
-            span = module.text.span(each)
-            quoted = any(each.attr in one.constants for one in modules)
+            span = module.text.span(inner)
+            quoted = any(inner.attr in one.constants for one in modules)
             if quoted or module.text.is_filled(span):
                 continue
-            word = Word(each.attr, _end_of(span, each.attr))
-            defined.add(each.attr)
-            if each.attr in given:
+            word = Word(inner.attr, _end_of(span, inner.attr))
+            defined.add(inner.attr)
+            if inner.attr in given:
                 found.append(ClassFault(kind=UNSET_ATTRIBUTE, name=word))
                 continue
             known = {*usual, *(name for names in elsewhere for name in names)}
             near = guesser(sorted(name for name in known if not name.startswith("__")
-                                  or name in STATE_METHODS))(each.attr)  # fmt: skip
-            calls = any(each in one.called for one in modules)
+                                  or name in STATE_METHODS))(inner.attr)  # fmt: skip
+            calls = any(inner in one.called for one in modules)
             if near is None and not calls:
                 near = unread
             if near is not None or calls:
                 found.append(ClassFault(kind=UNDEFINED_METHOD, name=word, near=near))
-            elif isinstance(each.ctx, ast.Load) and constructor and each not in caught(node):
-                near = _meant_value(module, each.attr)
+            elif isinstance(inner.ctx, ast.Load) and constructor and inner not in caught(node):
+                near = _meant_value(module, inner.attr)
                 found.append(ClassFault(kind=NEVER_SET, name=word, near=near))
     return found
 
@@ -453,10 +462,10 @@ def _meant_value(module: Module, attribute: str) -> str:
     """The value that another class of a module gives to an attribute of the same name, or the call
     of a class with that name; `...` without one."""
     given = {
-        " ".join(module.text.span(each.value).text.split())
-        for each in module.nodes
-        if isinstance(each, ast.Assign) and isinstance(each.targets[0], ast.Attribute)
-        and each.targets[0].attr == attribute and isinstance(each.value, ast.Call)
+        " ".join(module.text.span(node.value).text.split())
+        for node in module.nodes
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Attribute)
+        and node.targets[0].attr == attribute and isinstance(node.value, ast.Call)
     }  # fmt: skip
     if len(given) == 1:
         return min(given)
@@ -472,8 +481,13 @@ def _only_unread(own: OwnClass, modules: Iterable[Module]) -> str | None:
     found = own.method("__init__")
     if found is None:
         return None
-    kept = {each.attr for each in walk_code(found[1]) if isinstance(each, ast.Attribute)
-            and _of_self(each) and isinstance(each.ctx, ast.Store)}  # fmt: skip
+    kept = {
+        attribute.attr
+        for attribute in walk_code(found[1])
+        if isinstance(attribute, ast.Attribute)
+        and _of_self(attribute)
+        and isinstance(attribute.ctx, ast.Store)
+    }
     unread = [name for name in kept
               if not any(name in module.attributes["read"] for module in modules)]  # fmt: skip
     return unread[0] if len(unread) == 1 else None
@@ -487,12 +501,12 @@ def undefined_in_base(own: OwnClass) -> Iterator[ClassFault]:
         defined = INHERITED.union(*own.names[at + 1 :])
         usual = sorted(STATE_METHODS.union(*own.names[at + 1 :]))
         others = of_other_objects(node)
-        for each in _evaluated(node):
-            match each:
-                case _ if each in others:
+        for inner in _evaluated(node):
+            match inner:
+                case _ if inner in others:
                     continue
                 case ast.Attribute(value=ast.Call(func=ast.Name(id="super"), args=[]), attr=name):
-                    span = module.text.span(each)
+                    span = module.text.span(inner)
                 case _:
                     continue
             if name in defined or module.text.is_filled(span):

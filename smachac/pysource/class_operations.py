@@ -53,10 +53,10 @@ def operations(module: Module, function: ast.FunctionDef) -> tuple[Word, ...]:
     """
     userdata = function.args.args[1].arg
     every = [*walk_code(function)]
-    if any(isinstance(each, ast.Name) and each.id in TESTS for each in every):
+    if any(isinstance(node, ast.Name) and node.id in TESTS for node in every):
         return ()
     tried, written = tried_code(every), written_keys(every, userdata)
-    bound = {each.arg for each in every if isinstance(each, ast.arg)} - {userdata}
+    bound = {argument.arg for argument in every if isinstance(argument, ast.arg)} - {userdata}
     names = (PURE - module.names.keys() - bound) | {userdata}
     found = []
     todo: list[ast.AST] = [*reversed(function.body)]
@@ -71,7 +71,7 @@ def operations(module: Module, function: ast.FunctionDef) -> tuple[Word, ...]:
             continue
         parts = [*ast.iter_child_nodes(node)]
         if isinstance(node, ast.Call):  # `all(...)` of an array of numpy
-            parts = [each for each in parts if not isinstance(each, ast.Compare)]
+            parts = [part for part in parts if not isinstance(part, ast.Compare)]
         todo.extend(reversed(parts))
     return tuple(found)
 
@@ -82,19 +82,19 @@ def _is_known(
     """Whether an expression has no names but those of the userdata and of pure functions, and reads
     a key that the code does not write."""
     every = [*walk_code(node)]
-    used = {each.id for each in every if isinstance(each, ast.Name)}
-    keys = {found.key for each in every if (found := access_of(each, userdata)) is not None}
+    used = {name.id for name in every if isinstance(name, ast.Name)}
+    keys = {found.key for node in every if (found := access_of(node, userdata)) is not None}
     return used <= names and bool(keys) and not keys & written
 
 
 def _written_values(every: list[ast.AST], userdata: str) -> list[ast.expr]:
     """The values of the assignments to one userdata key each."""
     return [
-        each.value
-        for each in every
-        if isinstance(each, ast.Assign)
-        and len(each.targets) == 1
-        and access_of(each.targets[0], userdata) is not None
+        assignment.value
+        for assignment in every
+        if isinstance(assignment, ast.Assign)
+        and len(assignment.targets) == 1
+        and access_of(assignment.targets[0], userdata) is not None
     ]
 
 
@@ -105,8 +105,8 @@ def number_writes(module: Module, function: ast.FunctionDef) -> tuple[Span, ...]
     if not values:
         return ()
     local = dict(bound_once(every))
-    found = (each for each in values if _is_number(each, module, local, 10))
-    return tuple(module.text.span(each) for each in found)
+    found = (value for value in values if _is_number(value, module, local, 10))
+    return tuple(module.text.span(node) for node in found)
 
 
 def collection_writes(
@@ -119,30 +119,30 @@ def collection_writes(
     if not values:
         return
     local = dict(bound_once(every))
-    bound = {each.arg for each in every if isinstance(each, ast.arg)} | local.keys()
-    for each in values:
-        match local.get(each.id) if isinstance(each, ast.Name) else each:
+    bound = {argument.arg for argument in every if isinstance(argument, ast.arg)} | local.keys()
+    for value in values:
+        match local.get(value.id) if isinstance(value, ast.Name) else value:
             case ast.List() | ast.ListComp():
-                yield module.text.span(each), "list"
+                yield module.text.span(value), "list"
             case ast.Dict() | ast.DictComp():
-                yield module.text.span(each), "dict"
+                yield module.text.span(value), "dict"
             case ast.Call(func=ast.Name(id="list" | "sorted" | "dict" as name)):
                 if name not in module.names and name not in bound:
-                    yield module.text.span(each), "dict" if name == "dict" else "list"
+                    yield module.text.span(value), "dict" if name == "dict" else "list"
 
 
 def bound_once(every: list[ast.AST]) -> Iterator[tuple[str, ast.expr]]:
     """The local names that are bound once, by an assignment, each with its value."""
-    stored = [each for each in every if isinstance(each, ast.Name)]
-    bound = Counter(each.id for each in stored if not isinstance(each.ctx, ast.Load))
-    bound.update(each.arg for each in every if isinstance(each, ast.arg))
-    for each in every:
-        match each:
+    stored = [name for name in every if isinstance(name, ast.Name)]
+    bound = Counter(name.id for name in stored if not isinstance(name.ctx, ast.Load))
+    bound.update(argument.arg for argument in every if isinstance(argument, ast.arg))
+    for node in every:
+        match node:
             case ast.Global(names=names) | ast.Nonlocal(names=names):
                 bound.update(names)
                 bound.update(names)
-    for each in every:
-        match each:
+    for node in every:
+        match node:
             case ast.Assign(targets=[ast.Name(id=name)], value=value) if bound[name] == 1:
                 yield name, value
 
@@ -151,7 +151,7 @@ def _is_number(node: ast.expr, module: Module, local: Mapping[str, ast.expr], de
     """Whether the value of an expression is one number, whatever its names are."""
 
     def known(*nodes: ast.expr) -> bool:
-        return depth > 0 and all(_is_number(each, module, local, depth - 1) for each in nodes)
+        return depth > 0 and all(_is_number(node, module, local, depth - 1) for node in nodes)
 
     match node:
         case ast.Constant(value=int() | float() as value):
@@ -179,7 +179,7 @@ def _is_math(module: Module) -> bool:
     """Whether the name `math` is the module of Python."""
     match module.names.get("math", ()):
         case (ast.Import(names=names),):
-            return any(each.name == "math" and each.asname is None for each in names)
+            return any(name.name == "math" and name.asname is None for name in names)
     return False
 
 
@@ -198,9 +198,9 @@ def compared_texts(
     for module, node in own.classes:
         others = of_other_objects(node)
         inside = {*walk_code(execute)} if execute in node.body and execute is not None else set()
-        for each in walk_code(node):
-            for side, texts in _equalities(each) if each not in others else ():
-                key = access_of(side, userdata) if each in inside else None
+        for inner in walk_code(node):
+            for side, texts in _equalities(inner) if inner not in others else ():
+                key = access_of(side, userdata) if inner in inside else None
                 match side:
                     case ast.Attribute(value=ast.Name(id="self"), attr=name) if name in kept:
                         found = kept[name]
@@ -228,8 +228,8 @@ def _equalities(node: ast.AST) -> Iterator[tuple[ast.expr, list[ast.Constant]]]:
                 yield left, _texts(right.elts)
         case ast.Match(subject=subject, cases=cases):
             patterns = [part for case in cases for part in _alternatives(case.pattern)]
-            yield subject, _texts([each.value for each in patterns
-                                   if isinstance(each, ast.MatchValue)])  # fmt: skip
+            yield subject, _texts([pattern.value for pattern in patterns
+                                   if isinstance(pattern, ast.MatchValue)])  # fmt: skip
 
 
 def _alternatives(pattern: ast.pattern) -> list[ast.pattern]:
@@ -237,8 +237,8 @@ def _alternatives(pattern: ast.pattern) -> list[ast.pattern]:
 
 
 def _texts(nodes: list[ast.expr]) -> list[ast.Constant]:
-    return [each for each in nodes
-            if isinstance(each, ast.Constant) and isinstance(each.value, str)]  # fmt: skip
+    return [node for node in nodes
+            if isinstance(node, ast.Constant) and isinstance(node.value, str)]  # fmt: skip
 
 
 def _defaults(own: OwnClass) -> dict[str, list[object]]:
@@ -249,9 +249,9 @@ def _defaults(own: OwnClass) -> dict[str, list[object]]:
     taken = found[1].args
     positional = [*taken.posonlyargs, *taken.args]
     pairs = [*zip(reversed(positional), reversed(taken.defaults), strict=False)]
-    pairs += [(each, default) for each, default in
+    pairs += [(argument, default) for argument, default in
               zip(taken.kwonlyargs, taken.kw_defaults, strict=True) if default]  # fmt: skip
-    return {each.arg: [default.value] for each, default in pairs
+    return {argument.arg: [default.value] for argument, default in pairs
             if isinstance(default, ast.Constant)}  # fmt: skip
 
 
@@ -267,8 +267,8 @@ def table_look_ups(
     for module, node in own.classes:
         every = [*walk_code(node)]
         left_out = of_other_objects(node) | tried_code(every)
-        for each in every:
-            match each:
+        for inner in every:
+            match inner:
                 case ast.Subscript(value=ast.Name(id=name), slice=index, ctx=ast.Load()):
                     pass
                 case _:
@@ -281,9 +281,9 @@ def table_look_ups(
                     found = key.key
                 case _:
                     continue
-            table = _table(module, name) if each not in left_out else None
-            if table is not None and not module.text.is_filled(module.text.span(each)):
-                span = module.text.span(each)
+            table = _table(module, name) if inner not in left_out else None
+            if table is not None and not module.text.is_filled(module.text.span(inner)):
+                span = module.text.span(inner)
                 kind: Literal["key", "variable"] = "key" if key is not None else "variable"
                 yield TableLookUp(kind, found, name, table, Word(span.text, span))
 
@@ -297,13 +297,13 @@ def _table(module: Module, name: str) -> tuple[Word, ...] | None:
         case _:
             return None
     every = module.nodes
-    uses = [each for each in every if isinstance(each, ast.Name) and each.id == name]
-    looked_up = {each.value for each in every
-                 if isinstance(each, ast.Subscript) and isinstance(each.ctx, ast.Load)}  # fmt: skip
-    texts = _texts([each for each in keys if each is not None])
-    stores = [each for each in uses if isinstance(each.ctx, ast.Store)]
+    uses = [word for word in every if isinstance(word, ast.Name) and word.id == name]
+    looked_up = {node.value for node in every
+                 if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Load)}  # fmt: skip
+    texts = _texts([key for key in keys if key is not None])
+    stores = [use for use in uses if isinstance(use.ctx, ast.Store)]
     if len(texts) != len(keys) or not texts or len(stores) != 1:
         return None
-    if any(each not in looked_up for each in uses if each not in stores):
+    if any(use not in looked_up for use in uses if use not in stores):
         return None
-    return tuple(Word(str(each.value), module.text.span(each)) for each in texts)
+    return tuple(Word(str(text.value), module.text.span(text)) for text in texts)

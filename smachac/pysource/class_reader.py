@@ -190,7 +190,7 @@ def read_template(source: Source, name: str, library: UserCode) -> ClassFacts | 
 def _in_template(module: Module, name: str) -> ast.ClassDef | None:
     classes = [node for node in module.text.tree.body if isinstance(node, ast.ClassDef)]
     named = [node for node in classes if node.name == name]
-    running = [node for node in classes if any(_is_execute(each) for each in walk_code(node))]
+    running = [node for node in classes if any(_is_execute(inner) for inner in walk_code(node))]
     for some in (named, running, classes):
         if some:
             return some[0] if len(some) == 1 else None
@@ -269,7 +269,7 @@ def facts_of_callback(
         in_loop=flow.in_loop,
         reads=flow.reads,
         writes=flow.writes,
-        closed=bool(flow.endings) and all(each.written is not None for each in flow.endings),
+        closed=bool(flow.endings) and all(ending.written is not None for ending in flow.endings),
     )
 
 
@@ -297,7 +297,7 @@ def _structure(module: Module, node: ast.ClassDef, library: UserCode) -> ClassFa
         in_loop=flow.in_loop,
         reads=flow.reads,
         writes=flow.writes,
-        closed=bool(flow.endings) and all(each.written is not None for each in flow.endings),
+        closed=bool(flow.endings) and all(ending.written is not None for ending in flow.endings),
     )
 
 
@@ -308,7 +308,7 @@ def _facts(module: Module, node: ast.ClassDef, library: UserCode) -> ClassFacts:
     whole = not any(piece.startswith("{%") for piece in _fillings(module, node))
     undefined = (*_undefined(own, lists, library),) if whole else ()
     flow, execute, place = _execute(own, library)
-    if execute is not None and any(_is_userdata(each, execute) for each in undefined):
+    if execute is not None and any(_is_userdata(fault, execute) for fault in undefined):
         flow = Flow()  # its code uses another name for the userdata
     return ClassFacts(
         name=Word(node.name, name_span(module.text, node)),
@@ -327,9 +327,9 @@ def _facts(module: Module, node: ast.ClassDef, library: UserCode) -> ClassFacts:
         in_loop=flow.in_loop,
         reads=flow.reads,
         writes=flow.writes,
-        closed=bool(flow.endings) and all(each.written is not None for each in flow.endings),
+        closed=bool(flow.endings) and all(ending.written is not None for ending in flow.endings),
         stub=execute is not None and all(map(_does_nothing, execute.body)),
-        checks_stop=any(_checks_stop(each) for _, each in own.classes),
+        checks_stop=any(_checks_stop(class_) for _, class_ in own.classes),
         values=written_values(own, execute, library) if execute is not None else (),
         unused=unused_values(own, execute) if execute is not None else (),
         local=local_values(text_of(own, execute), execute) if execute is not None else (),
@@ -354,8 +354,8 @@ def _hooks(own: OwnClass) -> tuple[str, ...]:
     found = [name for name in HOOKS if own.method(name) is not None]
     if not found or own.root != "state":
         return ()
-    used = {each.attr for _, node in own.classes for each in walk_code(node)
-            if isinstance(each, ast.Attribute)}  # fmt: skip
+    used = {attribute.attr for _, node in own.classes for attribute in walk_code(node)
+            if isinstance(attribute, ast.Attribute)}  # fmt: skip
     return tuple(name for name in found if name not in used)
 
 
@@ -364,14 +364,14 @@ def _undefined(
 ) -> Iterator[ClassFault]:
     """The names and attributes that nothing defines, and other slips in the code."""
     modules = {module.name: module for module, _ in own.classes if module.name}.values()
-    imports = [each for module in modules
-               for each in missing_imports(module, library)]  # fmt: skip
+    imports = [import_ for module in modules
+               for import_ in missing_imports(module, library)]  # fmt: skip
     yield from imports
-    absent = {each.name.text for each in imports}
+    absent = {import_.name.text for import_ in imports}
     names = {key: [word.text for word in words or ()] for key, words in (lists or {}).items()}
     for module, node in own.classes:
         found = undefined_names(own, module, node, names)
-        yield from (each for each in found if each.near not in absent)
+        yield from (fault for fault in found if fault.near not in absent)
         yield from missing_attributes(module, node, library)
     yield from undefined_methods(own)
     yield from undefined_in_base(own)
@@ -408,7 +408,7 @@ def _execute(own: OwnClass, library: UserCode) -> tuple[Flow, ast.FunctionDef | 
     if found is None:
         return Flow(), None, None
     module, function = found
-    named = sum(_is_execute(each) for _, node in own.classes for each in walk_code(node))
+    named = sum(_is_execute(inner) for _, node in own.classes for inner in walk_code(node))
     plain = is_plain(function) and len(function.args.args) == 2 and not function.args.posonlyargs
     tags = any(piece.startswith("{%") for piece in _fillings(module, function))
     overridden = sum("execute" in names for names in own.names)
@@ -430,7 +430,9 @@ def _does_nothing(node: ast.stmt) -> bool:
 
 def _checks_stop(node: ast.ClassDef) -> bool:
     """Whether a class uses a method with a name such as `preempt_requested`."""
-    attributes = (each.attr for each in walk_code(node) if isinstance(each, ast.Attribute))
+    attributes = (
+        attribute.attr for attribute in walk_code(node) if isinstance(attribute, ast.Attribute)
+    )
     return any("preempt" in name for name in attributes)
 
 
@@ -462,15 +464,15 @@ def _at_method(kind: FaultKind, module: Module, node: ast.FunctionDef) -> ClassF
 def _twice(module: Module, node: ast.ClassDef) -> list[ClassFault]:
     """The later ones of two definitions of the class, and of two plain methods of one name."""
     found = []
-    same = [each for each in module.text.tree.body if getattr(each, "name", "") == node.name]
+    same = [inner for inner in module.text.tree.body if getattr(inner, "name", "") == node.name]
     if len(same) > 1 and same[-1] is node:
         found.append(_at_class(DEFINED_TWICE, module, node))
     methods: dict[str, ast.FunctionDef] = {}
-    for each in node.body:
-        if isinstance(each, ast.FunctionDef) and not each.decorator_list:
-            if each.name in methods:
-                found.append(_at_method(DEFINED_TWICE, module, each))
-            methods[each.name] = each
+    for inner in node.body:
+        if isinstance(inner, ast.FunctionDef) and not inner.decorator_list:
+            if inner.name in methods:
+                found.append(_at_method(DEFINED_TWICE, module, inner))
+            methods[inner.name] = inner
     return found
 
 
@@ -508,23 +510,23 @@ def _names_super(node: ast.AST) -> bool:
 def _constructor_faults(own: OwnClass) -> list[ClassFault]:
     """A constructor that does not call the one of `smach.State`, or none at all."""
     module, node = own.classes[0]
-    if own.binds("__new__") or any(_registers(each) for _, each in own.classes):
+    if own.binds("__new__") or any(_registers(class_) for _, class_ in own.classes):
         return []
     if not own.binds("__init__"):
         return [_at_class(NO_OUTCOMES, module, node)]
     found = own.method("__init__")
     if found is None:
         return []
-    owner = next(each for (_, each), names in zip(own.classes, own.names, strict=True)
+    owner = next(class_ for (_, class_), names in zip(own.classes, own.names, strict=True)
                  if "__init__" in names)  # fmt: skip
     calls = any(
-        (isinstance(each, ast.Call) and _names_super(each.func))
+        (isinstance(node, ast.Call) and _names_super(node.func))
         or (
-            isinstance(each, ast.Attribute)
-            and each.attr == "__init__"
-            and not _names_super(each.value)
+            isinstance(node, ast.Attribute)
+            and node.attr == "__init__"
+            and not _names_super(node.value)
         )
-        for each in walk_code(owner)
+        for node in walk_code(owner)
     )
     calls = calls or any(map(is_uncalled_super, walk_code(owner)))  # "super not called"
     return [] if calls else [_without_call(own, *found)]
@@ -537,12 +539,18 @@ def _without_call(own: OwnClass, module: Module, maker: ast.FunctionDef) -> Clas
     bases = [names["__init__"][-1] for names in own.names[at + 1 :] if "__init__" in names]
     if not bases or not isinstance(bases[0], ast.FunctionDef):
         return _at_method(NO_CONSTRUCTOR_CALL, module, maker)
-    taken, known = bases[0].args, {each.arg for each in maker.args.args[1:]}
+    taken, known = bases[0].args, {argument.arg for argument in maker.args.args[1:]}
     positional = [*taken.posonlyargs, *taken.args]
     required = positional[1 : len(positional) - len(taken.defaults)]
-    required += [each for each, default in zip(taken.kwonlyargs, taken.kw_defaults, strict=True)
-                 if default is None]  # fmt: skip
-    given = [f"{each.arg}={each.arg if each.arg in known else '...'}" for each in required]
+    required += [
+        argument
+        for argument, default in zip(taken.kwonlyargs, taken.kw_defaults, strict=True)
+        if default is None
+    ]
+    given = [
+        f"{argument.arg}={argument.arg if argument.arg in known else '...'}"
+        for argument in required
+    ]
     name = Word(maker.name, name_span(module.text, maker))
     near = f"super().__init__({', '.join(given)})"
     return ClassFault(kind=NO_BASE_CONSTRUCTOR_CALL, name=name, near=near)
@@ -554,7 +562,9 @@ def _data_class_fault(module: Module, node: ast.ClassDef) -> Iterator[ClassFault
     if len(node.decorator_list) != 1:
         return
     (decorator,) = node.decorator_list
-    if isinstance(decorator, ast.Call) and all(each.arg != "init" for each in decorator.keywords):
+    if isinstance(decorator, ast.Call) and all(
+        keyword.arg != "init" for keyword in decorator.keywords
+    ):
         decorator = decorator.func
     if ast.unparse(decorator) not in ("dataclass", "dataclasses.dataclass"):
         return
@@ -570,9 +580,9 @@ def _call_faults(own: OwnClass) -> Iterator[ClassFault]:
     if found is None or not found[1].args.args:
         return
     module, maker = found
-    owner = next(each for _, each in own.classes if maker in each.body)
-    names = {each.name for _, each in own.classes}
-    others = own.root != "state" or sum("__init__" in each for each in own.names) != 1
+    owner = next(class_ for _, class_ in own.classes if maker in class_.body)
+    names = {class_.name for _, class_ in own.classes}
+    others = own.root != "state" or sum("__init__" in name for name in own.names) != 1
     me = maker.args.args[0].arg
     for call in walk_code(maker):
         match call:
@@ -634,7 +644,7 @@ def _list_faults(own: OwnClass) -> Iterator[ClassFault]:
                 continue
             items = [word.text for word in _words(module.text, value) or ()]
             items = [text] if isinstance(text, str) else items
-            listed = ", ".join(f'"{each}"' for each in items)
+            listed = ", ".join(f'"{item}"' for item in items)
             near = f"{key}=[{listed}]" if items else None
             yield ClassFault(kind=NO_LIST, name=Word(key, span), near=near)
 
@@ -687,21 +697,23 @@ def _parameters(own: OwnClass) -> tuple[Parameter, ...] | None:
     first = len(positional) - len(given.defaults)
     required = set(positional[:first])
     required |= {
-        each
-        for each, default in zip(given.kwonlyargs, given.kw_defaults, strict=True)
+        argument
+        for argument, default in zip(given.kwonlyargs, given.kw_defaults, strict=True)
         if default is None
     }
-    named = [each for each in [*given.args, *given.kwonlyargs] if each is not positional[0]]
-    words = {each: Word(each.arg, _place(module.text, each)) for each in named}
+    named = [
+        argument for argument in [*given.args, *given.kwonlyargs] if argument is not positional[0]
+    ]
+    words = {argument: Word(argument.arg, _place(module.text, argument)) for argument in named}
     if any(module.text.is_filled(word.span) for word in words.values()):
         return None
     uses: dict[str, tuple[Span, ...]] = {}
-    for each in walk_code(function):
-        if isinstance(each, ast.Name):
-            uses[each.id] = (*uses.get(each.id, ()), module.text.span(each))
+    for node in walk_code(function):
+        if isinstance(node, ast.Name):
+            uses[node.id] = (*uses.get(node.id, ()), module.text.span(node))
     return tuple(
-        Parameter(word=word, required=each in required, uses=uses.get(word.text, ()))
-        for each, word in words.items()
+        Parameter(word=word, required=name in required, uses=uses.get(word.text, ()))
+        for name, word in words.items()
     )
 
 
@@ -719,7 +731,7 @@ def _declared(own: OwnClass) -> dict[str, Words | None] | None:
     last, node = own.classes[-1]
     made = _base_call(last.text, node) if len(own.classes) > 1 else None
     passed = arguments_to_base(own) if made is not None else None
-    if made is None or passed is None or any(_registers(each) for _, each in own.classes):
+    if made is None or passed is None or any(_registers(class_) for _, class_ in own.classes):
         return None
     lists: dict[str, Words | None] = {}
     for key, value in made[1].items():
@@ -740,12 +752,12 @@ def _passed(text: PythonText, node: ast.ClassDef) -> Iterator[tuple[str, tuple[s
     maker, given = found
     arguments = maker.args.args
     pairs = zip(reversed(arguments), reversed(maker.args.defaults), strict=False)
-    defaults = {each.arg: default for each, default in pairs}
+    defaults = {argument.arg: default for argument, default in pairs}
     changed = {
-        each.id if isinstance(each, ast.Name) else ast.unparse(each.value)
-        for each in walk_code(maker)
-        if (isinstance(each, ast.Name) and not isinstance(each.ctx, ast.Load))
-        or isinstance(each, ast.Attribute)
+        node.id if isinstance(node, ast.Name) else ast.unparse(node.value)
+        for node in walk_code(maker)
+        if (isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load))
+        or isinstance(node, ast.Attribute)
     }
     for key in ("outcomes", "input_keys", "output_keys"):
         value = given.get(key)
@@ -754,7 +766,7 @@ def _passed(text: PythonText, node: ast.ClassDef) -> Iterator[tuple[str, tuple[s
         default = defaults.get(value.id)
         none = default is None or (isinstance(default, ast.Constant) and default.value is None)
         words = () if none else _words(text, default) if default is not None else ()
-        if words is not None and value.id in {each.arg for each in arguments}:
+        if words is not None and value.id in {argument.arg for argument in arguments}:
             yield key, tuple(word.text for word in words)
 
 
@@ -764,7 +776,7 @@ def _base_call(
     """The constructor of a class and the arguments by name that it passes to `smach.State`; None if
     it is more than one `__init__` of a plain `smach.State`."""
     bases = [ast.unparse(base) for base in node.bases]
-    makers = [each for each in node.body if getattr(each, "name", "") == "__init__"]
+    makers = [inner for inner in node.body if getattr(inner, "name", "") == "__init__"]
     plain = bases in (["smach.State"], ["State"]) and not node.keywords and not node.decorator_list
     if not plain or len(makers) != 1 or _registers(node):
         return None
@@ -773,8 +785,8 @@ def _base_call(
         return None
     if any(piece.startswith("{%") for piece in text.fillings(text.span(maker))):
         return None
-    calls = [each for each in walk_code(maker) if isinstance(each, ast.Call) and _is_super(each)]
-    alone = [each.value for each in maker.body if isinstance(each, ast.Expr)]
+    calls = [call for call in walk_code(maker) if isinstance(call, ast.Call) and _is_super(call)]
+    alone = [node.value for node in maker.body if isinstance(node, ast.Expr)]
     if len(calls) != 1 or calls[0] not in alone:
         return None
     given = _given(calls[0])
@@ -796,7 +808,7 @@ def _given(call: ast.Call) -> dict[str, ast.expr] | None:
     arguments = list(call.args)
     if isinstance(call.func, ast.Attribute) and not isinstance(call.func.value, ast.Call):
         arguments = arguments[1:]  # the first one is `self`
-    if any(isinstance(each, ast.Starred) for each in arguments):
+    if any(isinstance(argument, ast.Starred) for argument in arguments):
         return None
     found: dict[str, ast.expr] = dict(zip(STATE_PARAMETERS, arguments, strict=False))
     for keyword in call.keywords:
@@ -818,13 +830,13 @@ def _words(text: PythonText, value: ast.expr) -> Words | None:
     if not isinstance(value, ast.List | ast.Tuple | ast.Set):
         return None
     found = []
-    for each in value.elts:
-        span = text.span(each)
-        if not (isinstance(each, ast.Constant) and isinstance(each.value, str)):
+    for elt in value.elts:
+        span = text.span(elt)
+        if not (isinstance(elt, ast.Constant) and isinstance(elt.value, str)):
             return None
         if text.is_filled(span):
             return None
-        found += joined_texts(text, each)
+        found += joined_texts(text, elt)
     return None if text.is_filled(text.span(value)) else tuple(found)
 
 

@@ -99,11 +99,11 @@ def slips(own: OwnClass) -> Iterator[ClassFault]:
     objects = methods_of_objects(own)
     for module, node in own.classes:
         others = of_other_objects(node)
-        every = [each for each in walk_code(node) if each not in others]
+        every = [inner for inner in walk_code(node) if inner not in others]
         found = [*_uncalled(module.text, every, methods, objects), *_compared(module.text, every)]
         if "super" not in module.names:
             found += _uncalled_super(module.text, every)
-        yield from (each for each in found if not module.text.is_filled(each.name.span))
+        yield from (fault for fault in found if not module.text.is_filled(fault.name.span))
 
 
 def _methods(own: OwnClass) -> set[str]:
@@ -139,18 +139,18 @@ def _uncalled(
                 return node.attr in objects.get(owner, ())
         return False
 
-    tried = {inner for each in every if isinstance(each, ast.Try)
-             for line in each.body for inner in walk_code(line)}  # fmt: skip
-    for each in every:
-        if isinstance(each, ast.If | ast.While | ast.IfExp | ast.Assert):
-            for part in operands(each.test):
+    tried = {inner for node in every if isinstance(node, ast.Try)
+             for line in node.body for inner in walk_code(line)}  # fmt: skip
+    for inner in every:
+        if isinstance(inner, ast.If | ast.While | ast.IfExp | ast.Assert):
+            for part in operands(inner.test):
                 if isinstance(part, ast.Attribute) and is_method(part):
                     yield _without_call(NOT_CALLED, text, part)
-        elif isinstance(each, ast.Assign):
-            if isinstance(each.value, ast.Attribute) and _is_method_of_key(each.value):
-                yield _without_call(NOT_CALLED, text, each.value)
-        elif isinstance(each, ast.Expr) and each not in tried:
-            value = each.value
+        elif isinstance(inner, ast.Assign):
+            if isinstance(inner.value, ast.Attribute) and _is_method_of_key(inner.value):
+                yield _without_call(NOT_CALLED, text, inner.value)
+        elif isinstance(inner, ast.Expr) and inner not in tried:
+            value = inner.value
             if isinstance(value, ast.Attribute) and (is_method(value) or _is_method_of_key(value)):
                 answer = value.attr == "service_preempt"
                 yield _without_call(NO_ANSWER if answer else NO_EFFECT, text, value)
@@ -158,9 +158,9 @@ def _uncalled(
 
 def _uncalled_super(text: PythonText, every: Iterable[ast.AST]) -> Iterator[ClassFault]:
     """The calls of methods of `super` without `()`."""
-    for each in every:
-        match each:
-            case ast.Call(func=ast.Attribute(value=owner)) if is_uncalled_super(each):
+    for node in every:
+        match node:
+            case ast.Call(func=ast.Attribute(value=owner)) if is_uncalled_super(node):
                 yield ClassFault(kind=SUPER_NOT_CALLED, name=Word("super", text.span(owner)))
 
 
@@ -176,8 +176,8 @@ def operands(test: ast.expr) -> Iterator[ast.expr]:
     """The parts of a condition whose truth it uses."""
     match test:
         case ast.BoolOp(values=values):
-            for each in values:
-                yield from operands(each)
+            for value in values:
+                yield from operands(value)
         case ast.UnaryOp(op=ast.Not(), operand=inner):
             yield from operands(inner)
         case ast.Compare(left=left, comparators=[ast.Constant(bool() | str() | int())]):
@@ -205,15 +205,15 @@ def _without_call(kind: FaultKind, text: PythonText, node: ast.Attribute) -> Cla
 
 def _compared(text: PythonText, every: Iterable[ast.AST]) -> Iterator[ClassFault]:
     """`is` with a text or a number, and `==` as a statement."""
-    for each in every:
-        line = compared(each)
+    for node in every:
+        line = compared(node)
         if line is not None:
             left, right = text.span(line.left), text.span(line.comparators[0])
             sign = _between(text, left, right, "==")
             if sign is not None:
                 near = f"{left.text} = {right.text}"
                 yield ClassFault(kind=COMPARISON, name=Word(left.text, sign), near=near)
-        match each:
+        match node:
             case ast.Compare(left=one, ops=[ast.Is() | ast.IsNot() as sort], comparators=[other]):
                 if not (_is_value(one) or _is_value(other)):
                     continue
@@ -252,7 +252,9 @@ def wrong_base(module: Module, node: ast.ClassDef) -> Iterator[ClassFault]:
         match base:
             case ast.Attribute(value=ast.Name(id="smach"), attr=name) if name in SMACH_MODULES:
                 named = name.replace("_", "").casefold()
-                near = next(each for each in sorted(SMACH_CLASSES) if each.casefold() == named)
+                near = next(
+                    class_ for class_ in sorted(SMACH_CLASSES) if class_.casefold() == named
+                )
                 word = Word(f"smach.{name}", module.text.span(base))
                 yield ClassFault(kind=NO_STATE_CLASS, name=word, near=f"smach.{near}")
 
@@ -274,17 +276,17 @@ def joined_texts(text: PythonText, node: ast.Constant) -> list[Word]:
         return [Word(str(node.value), span)]
     lines = io.StringIO(f"({span.text})")
     try:
-        tokens = [each for each in tokenize.generate_tokens(lines.readline)
-                  if each.type == tokenize.STRING]  # fmt: skip
-        values = [ast.literal_eval(each.string) for each in tokens]
+        tokens = [token for token in tokenize.generate_tokens(lines.readline)
+                  if token.type == tokenize.STRING]  # fmt: skip
+        values = [ast.literal_eval(token.string) for token in tokens]
     except (tokenize.TokenError, SyntaxError, ValueError):
         return [Word(str(node.value), span)]
     if len(tokens) < 2:
         return [Word(str(node.value), span)]
     found, at = [], span.start
-    for each, value in zip(tokens, values, strict=True):
-        start = span.source.text.find(each.string, at, span.end)
-        at = start + len(each.string)
+    for token, value in zip(tokens, values, strict=True):
+        start = span.source.text.find(token.string, at, span.end)
+        at = start + len(token.string)
         found.append(Word(str(value), Span(span.source, start, at)))
     return found
 

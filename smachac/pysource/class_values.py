@@ -67,12 +67,12 @@ def _with_userdata(
         found = own.method(name)
         if found is None:
             continue
-        given = [each.arg for each in found[1].args.args[1:]]
+        given = [argument.arg for argument in found[1].args.args[1:]]
         if found[1] is execute:
             yield *found, parameter
         elif is_plain(found[1]):
-            meant = [each for each in ("userdata", "ud", parameter) if each in given]
-            yield from ((*found, each) for each in meant[:1])
+            meant = [text for text in ("userdata", "ud", parameter) if text in given]
+            yield from ((*found, text) for text in meant[:1])
 
 
 def _written_key(node: ast.AST, userdata: str) -> str | None:
@@ -89,9 +89,9 @@ def _written_key(node: ast.AST, userdata: str) -> str | None:
 
 def _results(own: OwnClass, module: Module, value: ast.expr, library: UserCode) -> Iterator[Word]:
     """The texts that a function or method of the user returns, if a value is a call of one."""
-    for text, each in _returned(own, module, value, library):
-        if isinstance(each, ast.Constant) and isinstance(each.value, str):
-            span = text.span(each)
+    for text, node in _returned(own, module, value, library):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            span = text.span(node)
             if not text.is_filled(span):
                 yield Word(span.text, span)
 
@@ -112,8 +112,8 @@ def _returned(
     if found is None or not is_plain(found[1]):
         return
     for one in returns_of(found[1].body):
-        for each in alternatives(one.value) if one.value is not None else ():
-            yield found[0].text, each
+        for alternative in alternatives(one.value) if one.value is not None else ():
+            yield found[0].text, alternative
 
 
 def _result_in_local(
@@ -129,16 +129,16 @@ def _result_in_local(
     if result is None or _is_tested(every, value.id):
         return []
     returned = [
-        (text.span(each), each)
-        for text, each in _returned(own, module, result, library)
-        if not (isinstance(each, ast.Constant) and each.value is None)
-        and not text.is_filled(text.span(each))
+        (text.span(node), node)
+        for text, node in _returned(own, module, result, library)
+        if not (isinstance(node, ast.Constant) and node.value is None)
+        and not text.is_filled(text.span(node))
     ]
     kinds = {
-        "text" if isinstance(each, ast.Constant) and isinstance(each.value, str) and each.value
-        else "list" if isinstance(each, ast.List) and each.elts
+        "text" if isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value
+        else "list" if isinstance(node, ast.List) and node.elts
         else "other"
-        for _, each in returned
+        for _, node in returned
     }  # fmt: skip
     return [span.text for span, _ in returned] if kinds in ({"text"}, {"list"}) else []
 
@@ -150,8 +150,8 @@ def _is_tested(every: list[ast.AST], name: str) -> bool:
     def is_it(node: ast.AST) -> bool:
         return isinstance(node, ast.Name) and node.id == name
 
-    for each in every:
-        match each:
+    for inner in every:
+        match inner:
             case ast.Compare(left=left, comparators=others):
                 sides = [left, *others]
                 constants = [side for side in sides if not is_it(side)]
@@ -183,9 +183,9 @@ def kept_parameters(own: OwnClass) -> dict[str, str]:
     if found is None:
         return {}
     maker = found[1]
-    changed = {each.id for each in walk_code(maker)
-               if isinstance(each, ast.Name) and not isinstance(each.ctx, ast.Load)}  # fmt: skip
-    given = {each.arg for each in (*maker.args.args[1:], *maker.args.kwonlyargs)} - changed
+    changed = {name.id for name in walk_code(maker)
+               if isinstance(name, ast.Name) and not isinstance(name.ctx, ast.Load)}  # fmt: skip
+    given = {argument.arg for argument in (*maker.args.args[1:], *maker.args.kwonlyargs)} - changed
     kept: dict[str, str] = {}
     for name, entries in own.assigned().items():
         match entries:
@@ -197,13 +197,13 @@ def kept_parameters(own: OwnClass) -> dict[str, str]:
 def _loops(own: OwnClass, kept: dict[str, str]) -> Iterator[tuple[str, Word]]:
     for module, node in own.classes:
         others = of_other_objects(node)
-        every = [each for each in walk_code(node) if each not in others]
-        tried = {inner for each in every if isinstance(each, ast.Try)
-                 for line in each.body for inner in walk_code(line)}  # fmt: skip
-        tested = any(isinstance(each, ast.Name) and each.id in ("isinstance", "type", "hasattr")
-                     for each in every)  # fmt: skip
-        for each in every:
-            match each:
+        every = [inner for inner in walk_code(node) if inner not in others]
+        tried = {inner for node in every if isinstance(node, ast.Try)
+                 for line in node.body for inner in walk_code(line)}  # fmt: skip
+        tested = any(isinstance(node, ast.Name) and node.id in ("isinstance", "type", "hasattr")
+                     for node in every)  # fmt: skip
+        for inner in every:
+            match inner:
                 case ast.For(iter=value) | ast.comprehension(iter=value):
                     pass
                 case _:
@@ -229,7 +229,11 @@ def lost_results(own: OwnClass) -> Iterator[ClassFault]:
 
 def _lost(module: Module, function: ast.FunctionDef) -> Iterator[ClassFault]:
     every = [*walk_code(function)]
-    assigns = [each for each in every if isinstance(each, ast.Assign) and len(each.targets) == 1]
+    assigns = [
+        assignment
+        for assignment in every
+        if isinstance(assignment, ast.Assign) and len(assignment.targets) == 1
+    ]
     for node in assigns:
         match node:
             case ast.Assign(
@@ -239,16 +243,16 @@ def _lost(module: Module, function: ast.FunctionDef) -> Iterator[ClassFault]:
                 name = module.text.span(target).text
             case _:
                 continue
-        values = [each.value for each in assigns
-                  if isinstance(each.targets[0], ast.Name) and each.targets[0].id == owner
-                  and each is not node]  # fmt: skip
-        stores = [each for each in every if isinstance(each, ast.Name) and each.id == owner
-                  and isinstance(each.ctx, ast.Store)]  # fmt: skip
+        values = [assign.value for assign in assigns
+                  if isinstance(assign.targets[0], ast.Name) and assign.targets[0].id == owner
+                  and assign is not node]  # fmt: skip
+        stores = [name for name in every if isinstance(name, ast.Name) and name.id == owner
+                  and isinstance(name.ctx, ast.Store)]  # fmt: skip
         used = not isinstance(target, ast.Name)
-        used = used or any(isinstance(each, ast.Name) and each.id == name
-                   and isinstance(each.ctx, ast.Load)
-                   and (each.lineno, each.col_offset) > (node.end_lineno, node.end_col_offset)
-                   for each in every)  # fmt: skip
+        used = used or any(isinstance(inner, ast.Name) and inner.id == name
+                   and isinstance(inner.ctx, ast.Load)
+                   and (inner.lineno, inner.col_offset) > (node.end_lineno, node.end_col_offset)
+                   for inner in every)  # fmt: skip
         known = values and len(values) + (owner == name) == len(stores)
         span = module.text.span(node)
         if known and used and all(map(_is_collection, values)) and not module.text.is_filled(span):
@@ -305,8 +309,8 @@ def _in_parentheses(module: Module, node: ast.expr) -> Span | None:
 
 def _used_as_list(node: ast.ClassDef) -> Iterator[str]:
     """The attributes of the object that a class uses as lists."""
-    for each in walk_code(node):
-        match each:
+    for inner in walk_code(node):
+        match inner:
             case ast.Call(func=ast.Name(id="list" | "tuple" | "set" | "sorted"), args=[value]):
                 pass
             case ast.Starred(value=value):

@@ -35,7 +35,7 @@ def member(module: Module, owner: str, name: str, library: UserCode) -> Member |
         return None
     text = constant(names, name)
     bases = [ast.unparse(base).rpartition(".")[2] for base in node.bases]
-    own = any("__" in each for each in names) and bases != []
+    own = any("__" in name for name in names) and bases != []
     if bases == ["Enum"] and not own and name in names:
         one = len(names[name]) == 1 and isinstance(names[name][0], ast.Assign)
         return Member(text=None, value=text) if one else None
@@ -57,8 +57,8 @@ def table(module: Module, name: str) -> ast.Dict | None:
             pass
         case _:
             return None
-    for each in module.nodes:
-        match each:
+    for node in module.nodes:
+        match node:
             case ast.Subscript(value=ast.Name(id=owner), ctx=ast.Store() | ast.Del()):
                 changed = owner == name
             case ast.Attribute(value=ast.Name(id=owner), attr=method):
@@ -76,15 +76,15 @@ def table(module: Module, name: str) -> ast.Dict | None:
 
 def entries(node: ast.Dict, key: ast.expr) -> list[ast.expr] | None:
     """The values one of which a dictionary has for a key; None: not known."""
-    if any(each is None for each in node.keys):  # `**other`
+    if any(key is None for key in node.keys):  # `**other`
         return None
     if not isinstance(key, ast.Constant):
         return node.values
-    if not all(isinstance(each, ast.Constant) for each in node.keys):
+    if not all(isinstance(key, ast.Constant) for key in node.keys):
         return None
     found = [
         value
-        for each, value in zip(node.keys, node.values, strict=True)
-        if isinstance(each, ast.Constant) and each.value == key.value
+        for member, value in zip(node.keys, node.values, strict=True)
+        if isinstance(member, ast.Constant) and member.value == key.value
     ]
     return found[-1:] or None

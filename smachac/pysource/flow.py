@@ -125,7 +125,7 @@ class _Reader:
             endings=tuple(endings),
             complete=self.complete and not filled,
             silent=not filled and not self.path_ends.block(body),
-            always_silent=not any(each.value is not None for each in returns),
+            always_silent=not any(returned.value is not None for returned in returns),
             reads=reads,
             writes=writes,
             written=written,
@@ -191,8 +191,8 @@ class _Reader:
                 self.called[node] = self._call(node)
 
     def _passes(self, call: ast.Call) -> bool:
-        given = [*call.args, *(each.value for each in call.keywords)]
-        return any(isinstance(each, ast.Name) and each.id == self.userdata for each in given)
+        given = [*call.args, *(keyword.value for keyword in call.keywords)]
+        return any(isinstance(node, ast.Name) and node.id == self.userdata for node in given)
 
     def _call(self, call: ast.Call) -> Flow | None:
         """The flow of a call of a method or function of the user; None where it is not known."""
@@ -214,12 +214,18 @@ class _Reader:
         if found is None:
             return None
         _, function, bound = found
-        parameters = [each.arg for each in function.args.args][bound:]
-        named = {each.arg for each in (*function.args.args, *function.args.kwonlyargs)}
-        if function.args.posonlyargs or any(isinstance(each, ast.Starred) for each in call.args):
+        parameters = [argument.arg for argument in function.args.args][bound:]
+        named = {argument.arg for argument in (*function.args.args, *function.args.kwonlyargs)}
+        if function.args.posonlyargs or any(
+            isinstance(argument, ast.Starred) for argument in call.args
+        ):
             return None
         given = dict(zip(parameters, call.args, strict=False))
-        given |= {each.arg: each.value for each in call.keywords if each.arg in named and each.arg}
+        given |= {
+            keyword.arg: keyword.value
+            for keyword in call.keywords
+            if keyword.arg in named and keyword.arg
+        }
         return given if len(given) == len(call.args) + len(call.keywords) else None
 
     def _target(self, called: ast.expr) -> tuple[Module, ast.FunctionDef, int] | None:
@@ -236,7 +242,7 @@ class _Reader:
                 return (module, function, 1) if is_plain(function) else None
             case ast.Name() | ast.Attribute():
                 name = next(
-                    (each.id for each in walk_code(called) if isinstance(each, ast.Name)), ""
+                    (name.id for name in walk_code(called) if isinstance(name, ast.Name)), ""
                 )
                 found = None if self._is_local(name) else self._function(called)
                 if found is not None and is_plain(found[1]):
@@ -284,14 +290,14 @@ class _Reader:
     def _is_local(self, name: str) -> bool:
         """Whether the function binds a name itself."""
         return any(
-            (isinstance(each, ast.Name) and each.id == name and not isinstance(each.ctx, ast.Load))
-            or (isinstance(each, ast.arg) and each.arg == name)
-            for each in self.nodes
+            (isinstance(node, ast.Name) and node.id == name and not isinstance(node.ctx, ast.Load))
+            or (isinstance(node, ast.arg) and node.arg == name)
+            for node in self.nodes
         )  # fmt: skip
 
     def _is_closed(self) -> bool:
         """Whether only this function and those it calls can write the userdata."""
-        uses = sum(isinstance(each, ast.Name) and each.id == self.userdata for each in self.nodes)
+        uses = sum(isinstance(node, ast.Name) and node.id == self.userdata for node in self.nodes)
         for node in self.nodes:
             match node:
                 case ast.Attribute(value=ast.Name(id=name), attr=key) if name == self.userdata:
@@ -329,7 +335,7 @@ class _Reader:
 
     def _skips(self, node: ast.AST) -> dict[str, Word]:
         """The keys that the called functions in an expression set only on some paths."""
-        calls = [self.called.get(each) for each in walk_code(node) if isinstance(each, ast.Call)]
+        calls = [self.called.get(call) for call in walk_code(node) if isinstance(call, ast.Call)]
         return {key: place for flow in calls if flow is not None for key, place in flow.skipped}
 
     def _accesses(self) -> tuple[tuple[Word, ...], tuple[Word, ...]]:
@@ -344,10 +350,10 @@ class _Reader:
                 case ast.Compare(left=ast.Constant(str() as word), ops=[ast.In() | ast.NotIn()]):
                     tested.add(word)
                 case ast.Try(handlers=[_, *_]):
-                    tried.update(inner for each in node.body for inner in walk_code(each))
+                    tried.update(inner for other in node.body for inner in walk_code(other))
         lines = [*map(compared, self.nodes)]
         compared_keys = {line.left for line in lines if line is not None}
-        updated = {each.target for each in self.nodes if isinstance(each, ast.AugAssign)}
+        updated = {node.target for node in self.nodes if isinstance(node, ast.AugAssign)}
         for node in self.nodes:
             access = access_of(node, self.userdata) if node not in tried else None
             if access is None or access.key in tested:
@@ -432,7 +438,7 @@ class _Reader:
         head = _both(before, self._all(node.finalbody))
         after = self._block(node.orelse, self._block(node.body, head))
         failed = _both(head, self._all(node.body))
-        after = _either(after, *(self._block(each.body, failed) for each in node.handlers))
+        after = _either(after, *(self._block(handler.body, failed) for handler in node.handlers))
         self._block(node.finalbody, _both(failed, self._all([*node.handlers, *node.orelse])))
         return None if self.path_ends.statement(node) else after
 
@@ -556,43 +562,43 @@ class _Reader:
         known = [self._constants(one, before) for value in values for one in alternatives(value)]
         if not certain:
             self.endings[first:] = [
-                replace(each, written=None, possible=True) for each in self.endings[first:]
+                replace(ending, written=None, possible=True) for ending in self.endings[first:]
             ]
         return all(known)
 
     def _named(self, name: str, span: Span, before: Keys) -> bool:
         """As `_constants` for a local variable that has only constants, or a constant of the
         module."""
-        stores = [each for each in self.nodes if isinstance(each, ast.Name) and each.id == name
-                  and not isinstance(each.ctx, ast.Load)]  # fmt: skip
+        stores = [node for node in self.nodes if isinstance(node, ast.Name) and node.id == name
+                  and not isinstance(node.ctx, ast.Load)]  # fmt: skip
         if not stores and self._is_passed(name):
             self.passed.append((name, before))
             return True
-        other = any(isinstance(each, ast.arg) and each.arg == name for each in self.nodes)
-        other = other or any(isinstance(each, ast.Global | ast.Nonlocal) for each in self.nodes)
+        other = any(isinstance(node, ast.arg) and node.arg == name for node in self.nodes)
+        other = other or any(isinstance(node, ast.Global | ast.Nonlocal) for node in self.nodes)
         if other:
             return False
         if not stores:
             return self._defined(self.text, constant_node(self.module.names, name), span, before)
-        given = [(_targets(each), each.value) for each in self.nodes
-                 if isinstance(each, ast.Assign | ast.AnnAssign)]  # fmt: skip
-        values = [value for targets, value in given for each in targets if each in stores]
+        given = [(_targets(node), node.value) for node in self.nodes
+                 if isinstance(node, ast.Assign | ast.AnnAssign)]  # fmt: skip
+        values = [value for targets, value in given for target in targets if target in stores]
         match values:
             case [ast.Call() as call] if len(stores) == 1 and not self._is_examined(name):
                 return self._results(call, before)
         found = [one for value in values if value is not None for one in alternatives(value)]
-        texts = [isinstance(each, ast.Constant) and isinstance(each.value, str) for each in found]
+        texts = [isinstance(node, ast.Constant) and isinstance(node.value, str) for node in found]
         if len(values) != len(stores) or None in values or not all(texts):
             return False
-        for each in found:
-            self._constants(each, before)
+        for node in found:
+            self._constants(node, before)
         return True
 
     def _is_passed(self, name: str) -> bool:
         """Whether a name is a parameter of the function that no condition of it examines."""
         given = self.function.args
-        own = [each.arg for each in (*given.args, *given.kwonlyargs)]
-        every = [each.arg for each in self.nodes if isinstance(each, ast.arg)]
+        own = [argument.arg for argument in (*given.args, *given.kwonlyargs)]
+        every = [node.arg for node in self.nodes if isinstance(node, ast.arg)]
         if own.count(name) != 1 or every.count(name) != 1 or name in (self.own_name, self.userdata):
             return False
         return not self._is_examined(name)
@@ -610,18 +616,18 @@ class _Reader:
                     tests.append(node)
                 case ast.Call(func=ast.Attribute(attr="get" | "pop")):
                     tests.append(node)
-        names = (each for test in tests for each in walk_code(test) if isinstance(each, ast.Name))
-        return any(each.id == name for each in names)
+        names = (name for test in tests for name in walk_code(test) if isinstance(name, ast.Name))
+        return any(word.id == name for word in names)
 
     def _results(self, call: ast.Call, before: Keys) -> bool:
         """As `_constants` for what a method or function of the user returns."""
         flow = self.called.get(call) if call in self.called else self._call(call)
         if flow is None:
             return False
-        for each in flow.endings:
-            written = each.written if call in self.called else NONE
+        for ending in flow.endings:
+            written = ending.written if call in self.called else NONE
             known = None if written is None else _both(before, written)
-            self.endings.append(replace(each, written=known))
+            self.endings.append(replace(ending, written=known))
         if flow.silent and flow.name is not None:
             none = Word("None", flow.name.span)
             sometimes = not flow.always_silent
@@ -633,7 +639,7 @@ class _Reader:
             set_before = (written or NONE) if call in self.called else NONE
             known = None if written is None else _both(before, set_before)
             values = [] if value is None else [*alternatives(value)]
-            certain = [self._constants(each, known) for each in values]
+            certain = [self._constants(value, known) for value in values]
             complete = complete and certain != [] and all(certain)
         return complete
 
@@ -665,5 +671,5 @@ def _both(some: Keys, more: Keys) -> Keys:
 
 
 def _either(*several: Keys) -> Keys:
-    reached = [each for each in several if each is not None]
+    reached = [frozenset_ for frozenset_ in several if frozenset_ is not None]
     return NONE.union(*reached) if reached else None

@@ -84,14 +84,14 @@ def returns_of(body: list[ast.stmt]) -> Iterator[ast.Return]:
 def caught(node: ast.ClassDef) -> set[ast.AST]:
     """The nodes in a `try` that catches the error of a missing attribute."""
     found: set[ast.AST] = set()
-    for each in walk_code(node):
-        if isinstance(each, ast.Try) and any(map(_is_wide, each.handlers)):
-            found.update(inner for line in each.body for inner in walk_code(line))
+    for inner in walk_code(node):
+        if isinstance(inner, ast.Try) and any(map(_is_wide, inner.handlers)):
+            found.update(inner for line in inner.body for inner in walk_code(line))
     return found
 
 
 def _is_wide(handler: ast.ExceptHandler) -> bool:
     if handler.type is None:
         return True
-    names = {each.id for each in walk_code(handler.type) if isinstance(each, ast.Name)}
+    names = {name.id for name in walk_code(handler.type) if isinstance(name, ast.Name)}
     return bool(names & WIDE)

@@ -70,7 +70,11 @@ class Import(NamedTuple):
 
 def missing_imports(module: Module, library: UserCode) -> list[ClassFault]:
     """The imports of a module of the user that fail."""
-    return [fault for each in _statements(module) for fault in _faults(each, library, module.text)]
+    return [
+        fault
+        for statement in _statements(module)
+        for fault in _faults(statement, library, module.text)
+    ]
 
 
 def missing_in_template(source: Source, library: UserCode) -> list[tuple[ClassFault, bool]]:
@@ -142,7 +146,7 @@ def _faults(one: Import, library: UserCode, user: PythonText | None = None) -> I
     if not one.module or head in sys.stdlib_module_names:
         return
     files = (f"{path}/__init__.py", f"{path}.py")
-    file = next((each for each in files if library.code(each) is not None), None)
+    file = next((file for file in files if library.code(file) is not None), None)
     if file is not None:
         other = load_module(one.module, library)
         if isinstance(other, ClassFault):
@@ -153,7 +157,7 @@ def _faults(one: Import, library: UserCode, user: PythonText | None = None) -> I
     folder = library.code_names(path)
     if not folder:
         yield from _no_module(one.module, one.written, library)
-    elif any(is_module(each) for each in folder):
+    elif any(is_module(text) for text in folder):
         for word in one.names:
             inner = f"{one.module}.{word.text}"
             other = load_module(inner, library)
@@ -174,7 +178,7 @@ def _no_names(
     if other.dynamic or makes_names(other.text.tree):
         return
     inside = library.code_names(file.rpartition("/")[0]) if other.package else ()
-    known = {*other.names, *(each.partition(".")[0] for each in inside)}
+    known = {*other.names, *(text.partition(".")[0] for text in inside)}
     guess = guesser(sorted(name for name in known if not name.startswith("__")))
     for word in one.names:
         if word.text not in known | words and not word.text.startswith("__"):
@@ -197,8 +201,8 @@ def _name_elsewhere(name: str, module: str, near: str | None, lines: tuple[int, 
 
 def _lines_with(name: str, user: PythonText) -> tuple[int, ...]:
     """The lines of code that use a name, each once."""
-    found = (each for each in walk_code(user.tree) if isinstance(each, ast.Name))
-    spans = [user.span(each) for each in found if each.id == name]
+    found = (name for name in walk_code(user.tree) if isinstance(name, ast.Name))
+    spans = [user.span(word) for word in found if word.id == name]
     return tuple(sorted({span.line for span in spans}))
 
 
@@ -221,4 +225,4 @@ def _no_module(name: str, place: Word, library: UserCode) -> Iterator[ClassFault
 
 def makes_names(tree: ast.Module) -> bool:
     """Whether code of a module can define names in another way than by a statement at its top."""
-    return any(isinstance(each, ast.Name) and each.id in MAKES_NAMES for each in walk_code(tree))
+    return any(isinstance(node, ast.Name) and node.id in MAKES_NAMES for node in walk_code(tree))

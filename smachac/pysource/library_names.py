@@ -94,8 +94,8 @@ def module_of_library(name: str) -> ModuleType | None:
     if origin not in ("built-in", "frozen"):
         path = Path(origin).resolve()
         folders = {sysconfig.get_path(key) for key in ("stdlib", "platstdlib")}
-        parents = [Path(each).resolve() for each in folders if each]
-        inside = any(each in path.parents for each in parents)
+        parents = [Path(folder).resolve() for folder in folders if folder]
+        inside = any(parent in path.parents for parent in parents)
         if not inside or {"site-packages", "dist-packages"} & {*path.parts}:
             return None
     return import_module(name)
@@ -110,7 +110,7 @@ def missing_name(module: str, name: str) -> str | None:
     meant = HABITS.get(module, {}).get(name)
     if meant is not None:
         return meant
-    public = [each for each in dir(found) if not each.startswith("_")]
+    public = [text for text in dir(found) if not text.startswith("_")]
     inner = getattr(found, module, None)
     if isinstance(inner, type) and hasattr(inner, name):
         return f"{module}.{module}.{name}"
@@ -125,12 +125,12 @@ def missing_name(module: str, name: str) -> str | None:
 
 def attributes(tree: ast.AST) -> Iterator[tuple[str, ast.Attribute]]:
     """The attributes of names in code that may be modules, with the name of each module."""
-    for each in walk_code(tree):
-        match each:
+    for node in walk_code(tree):
+        match node:
             case ast.Attribute(value=ast.Name(id=name)) if name in MODULES:
-                yield name, each
+                yield name, node
             case ast.Attribute(value=ast.Attribute(value=ast.Name(id="os"), attr="path")):
-                yield "os.path", each
+                yield "os.path", node
 
 
 def missing_attributes(
@@ -138,20 +138,22 @@ def missing_attributes(
 ) -> Iterator[ClassFault]:
     """The attributes of modules of the library that a class uses and that these do not have: of
     modules that a plain `import` binds, and nothing else."""
-    used = [(name, each) for name, each in attributes(node) if _is_plain(module, name)]
+    used = [(name, attribute) for name, attribute in attributes(node) if _is_plain(module, name)]
     if not used:
         return
     done = set[tuple[str, str]]()
-    for name, each in used:
-        span = module.text.span(each)
-        set_here = each.attr in module.constants or each.attr in module.attributes["changed"]
-        other = set_here or each in module.tried or (name, each.attr) in done
+    for name, attribute in used:
+        span = module.text.span(attribute)
+        set_here = (
+            attribute.attr in module.constants or attribute.attr in module.attributes["changed"]
+        )
+        other = set_here or attribute in module.tried or (name, attribute.attr) in done
         if other or name.partition(".")[0] in module.variables or module.text.is_filled(span):
             continue
-        meant = missing_name(name, each.attr)
+        meant = missing_name(name, attribute.attr)
         if meant is not None and not is_shadowed(name, library):
-            done.add((name, each.attr))
-            word = Word(each.attr, Span(span.source, span.end - len(each.attr), span.end))
+            done.add((name, attribute.attr))
+            word = Word(attribute.attr, Span(span.source, span.end - len(attribute.attr), span.end))
             help = f"write `{meant}`" if meant.endswith(")") else f"did you mean `{meant}`?"
             yield ClassFault(kind=NO_ATTRIBUTE, name=word, file=name, help=help if meant else "")
 
@@ -161,13 +163,13 @@ def _is_plain(module: Module, name: str) -> bool:
     head = name.partition(".")[0]
     bound = module.names.get(head, ())
     return bool(bound) and not module.dynamic and all(
-        isinstance(each, ast.Import) and _aliases(each).get(head, "").partition(".")[0] == head
-        for each in bound
+        isinstance(node, ast.Import) and _aliases(node).get(head, "").partition(".")[0] == head
+        for node in bound
     )  # fmt: skip
 
 
 def _aliases(node: ast.Import) -> dict[str, str]:
-    return {each.asname or each.name.partition(".")[0]: each.name for each in node.names}
+    return {name.asname or name.name.partition(".")[0]: name.name for name in node.names}
 
 
 def is_shadowed(name: str, library: UserCode) -> bool:
@@ -192,7 +194,7 @@ def methods_of_objects(own: OwnClass) -> Mapping[str, frozenset[str]]:
         kind = classes.pop() if len(classes) == 1 else None
         if kind is not None:
             found[name] = frozenset(
-                each for each, member in vars(kind).items()
+                name for name, member in vars(kind).items()
                 if isfunction(member) or ismethoddescriptor(member)
             )  # fmt: skip
     return found
@@ -203,7 +205,7 @@ def _class_of_library(module: Module, value: ast.expr | None) -> type | None:
     match value:
         case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr=attribute)):
             bound = module.names.get(name, ())
-            imported = bool(bound) and all(isinstance(each, ast.Import) for each in bound)
+            imported = bool(bound) and all(isinstance(node, ast.Import) for node in bound)
             library = module_of_library(name) if imported else None
             kind = getattr(library, attribute, None)
             return kind if isinstance(kind, type) else None

@@ -21,23 +21,28 @@ def unused_values(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, 
     """The local variables that `execute` assigns and does not use, with the key of each."""
     text = text_of(own, function)
     userdata = function.args.args[1].arg
-    names = [each for each in walk_code(function) if isinstance(each, ast.Name)]
-    used = {each.id for each in names if not isinstance(each.ctx, ast.Store)}
-    assigned = [each.targets[0] for each in walk_code(function)
-                if isinstance(each, ast.Assign) and len(each.targets) == 1]  # fmt: skip
+    names = [name for name in walk_code(function) if isinstance(name, ast.Name)]
+    used = {name.id for name in names if not isinstance(name.ctx, ast.Store)}
+    assigned = [node.targets[0] for node in walk_code(function)
+                if isinstance(node, ast.Assign) and len(node.targets) == 1]  # fmt: skip
     local = tuple(
-        (each.id, Word(f"{userdata}.{each.id}", text.span(each)))
-        for each in assigned
-        if isinstance(each, ast.Name) and each.id not in used
+        (node.id, Word(f"{userdata}.{node.id}", text.span(node)))
+        for node in assigned
+        if isinstance(node, ast.Name) and node.id not in used
     )
-    read = {each.attr for _, node in own.classes for each in walk_code(node)
-            if isinstance(each, ast.Attribute) and not isinstance(each.ctx, ast.Store)
-            and not (isinstance(each.value, ast.Name) and each.value.id == userdata)}  # fmt: skip
+    read = {
+        attribute.attr
+        for _, node in own.classes
+        for attribute in walk_code(node)
+        if isinstance(attribute, ast.Attribute)
+        and not isinstance(attribute.ctx, ast.Store)
+        and not (isinstance(attribute.value, ast.Name) and attribute.value.id == userdata)
+    }
     kept = tuple(
-        (each.attr, Word(f"{userdata}.{each.attr}", text.span(each)))
-        for each in assigned
-        if isinstance(each, ast.Attribute) and each.attr not in read
-        and isinstance(each.value, ast.Name) and each.value.id == "self"
+        (node.attr, Word(f"{userdata}.{node.attr}", text.span(node)))
+        for node in assigned
+        if isinstance(node, ast.Attribute) and node.attr not in read
+        and isinstance(node.value, ast.Name) and node.value.id == "self"
     )  # fmt: skip
     return (*kept, *local)
 
@@ -50,21 +55,21 @@ def local_values(text: PythonText, function: ast.FunctionDef) -> tuple[Word, ...
 
 def _local_values(text: PythonText, block: Sequence[ast.stmt]) -> Iterator[Word]:
     end = text.span(block[-1]).end
-    for each in block:
-        place = text.span(each)
-        for name in _assigned(each):
+    for node in block:
+        place = text.span(node)
+        for name in _assigned(node):
             yield Word(name, Span(place.source, place.end, end))
-        match each:
+        match node:
             case ast.If() | ast.For() | ast.While():
-                inner = [each.body, each.orelse]
+                inner = [node.body, node.orelse]
             case ast.With():
-                inner = [each.body]
+                inner = [node.body]
             case ast.Try():
                 inner = [
-                    each.body,
-                    each.orelse,
-                    each.finalbody,
-                    *(one.body for one in each.handlers),
+                    node.body,
+                    node.orelse,
+                    node.finalbody,
+                    *(one.body for one in node.handlers),
                 ]
             case _:
                 inner = []
@@ -79,11 +84,11 @@ def _assigned(node: ast.stmt) -> list[str]:
         case ast.Assign(targets=targets):
             parts = [
                 part
-                for each in targets
-                for part in (each.elts if isinstance(each, ast.Tuple) else [each])
+                for target in targets
+                for part in (target.elts if isinstance(target, ast.Tuple) else [target])
             ]
         case ast.AnnAssign(target=target, value=ast.expr()):
             parts = [target]
         case _:
             parts = []
-    return [each.id for each in parts if isinstance(each, ast.Name)]
+    return [part.id for part in parts if isinstance(part, ast.Name)]

@@ -53,7 +53,7 @@ def lost_outcomes(own: OwnClass, library: UserCode) -> list[ClassFault]:
         return []
     module, execute = found
     faults = [*_alone(own, module, execute, outcomes)]
-    if outcomes and not any(each.kind is LOST_TEXT for each in faults):
+    if outcomes and not any(fault.kind is LOST_TEXT for fault in faults):
         faults += _unbound(own, module, execute, outcomes, library)
     return faults
 
@@ -61,8 +61,8 @@ def lost_outcomes(own: OwnClass, library: UserCode) -> list[ClassFault]:
 def _listed_outcomes(own: OwnClass) -> Iterator[str]:
     """The outcomes that the constructors of a class and of its base classes list."""
     for _, node in own.classes:
-        for each in walk_code(node):
-            match each:
+        for inner in walk_code(node):
+            match inner:
                 case ast.keyword(
                     arg="outcomes", value=ast.List(elts=items) | ast.Tuple(elts=items)
                 ):
@@ -80,17 +80,21 @@ def _listed_outcomes(own: OwnClass) -> Iterator[str]:
 def _alone(
     own: OwnClass, module: Module, execute: ast.FunctionDef, outcomes: Collection[str]
 ) -> Iterator[ClassFault]:
-    returned = {each.value.value for each in returns_of(execute.body)
-                if isinstance(each.value, ast.Constant)}  # fmt: skip
-    ends = {id(each) for each in _last_lines(execute.body)}  # SM309
-    local = {each.id for each in walk_code(execute)
-             if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)}  # fmt: skip
-    for each in _statements(execute.body):
-        span = module.text.span(each)
-        if not isinstance(each, ast.Expr) or id(each) in ends or module.text.is_filled(span):
+    returned = {returned.value.value for returned in returns_of(execute.body)
+                if isinstance(returned.value, ast.Constant)}  # fmt: skip
+    ends = {id(line) for line in _last_lines(execute.body)}  # SM309
+    local = {name.id for name in walk_code(execute)
+             if isinstance(name, ast.Name) and isinstance(name.ctx, ast.Store)}  # fmt: skip
+    for statement in _statements(execute.body):
+        span = module.text.span(statement)
+        if (
+            not isinstance(statement, ast.Expr)
+            or id(statement) in ends
+            or module.text.is_filled(span)
+        ):
             continue
-        match each.value:
-            case ast.Constant() | ast.IfExp() as value if each is not execute.body[0]:
+        match statement.value:
+            case ast.Constant() | ast.IfExp() as value if statement is not execute.body[0]:
                 words = texts_of(value)
                 known = {*words} <= {*outcomes} if outcomes else all(map(str.isidentifier, words))
                 if words and known:
@@ -118,16 +122,16 @@ def _results(own: OwnClass, name: str) -> tuple[set[str], bool, bool]:
     if found is None or not is_plain(found[1]) or name in own.assigned():
         return set(), False, False
     module, function = found
-    values = [each.value for each in returns_of(function.body)]
-    texts = {each.value for each in values
-             if isinstance(each, ast.Constant) and isinstance(each.value, str)}  # fmt: skip
-    nothing = [each for each in values if each is None or _is_none(each)]
+    values = [returned.value for returned in returns_of(function.body)]
+    texts = {value.value for value in values
+             if isinstance(value, ast.Constant) and isinstance(value.value, str)}  # fmt: skip
+    nothing = [value for value in values if value is None or _is_none(value)]
     if sum(map(_is_text, values)) + len(nothing) != len(values):
         return set(), False, False
     whole = not nothing and PathEnds(module.names, lambda _: False).block(function.body)
     answers = PREEMPTED in texts and any(
-        isinstance(each, ast.Attribute) and each.attr == "service_preempt"
-        for each in walk_code(function)
+        isinstance(node, ast.Attribute) and node.attr == "service_preempt"
+        for node in walk_code(function)
     )
     return texts, whole, answers
 
@@ -163,13 +167,13 @@ def _last_lines(body: list[ast.stmt]) -> Iterator[ast.stmt]:
         case ast.With(body=inner):
             blocks = [inner]
         case ast.Try(body=inner, handlers=handlers, orelse=other):
-            blocks = [inner, other, *(each.body for each in handlers)]
+            blocks = [inner, other, *(handler.body for handler in handlers)]
         case ast.Match(cases=cases):
-            blocks = [each.body for each in cases]
+            blocks = [case_.body for case_ in cases]
         case _:
             return
-    for each in filter(None, blocks):
-        yield from _last_lines(each)
+    for block in filter(None, blocks):
+        yield from _last_lines(block)
 
 
 # --- names without a value
@@ -185,20 +189,20 @@ def _unbound(
     """Names that only the body of a `try` sets, and that the lines after it use although an
     `except` goes on. Code in loops is not judged: an earlier round can have set the name."""
     every = [*walk_code(execute)]
-    if any(isinstance(each, ast.Global | ast.Nonlocal | ast.Delete) for each in every):
+    if any(isinstance(node, ast.Global | ast.Nonlocal | ast.Delete) for node in every):
         return
     ends = PathEnds(module.names, lambda called: _can_raise(own, module, called, library))
-    rest = tuple(each for each in outcomes if each != PREEMPTED)
-    text = {each.value for each in every if isinstance(each, ast.Constant)}
-    unused = [each for each in rest if each not in text]
+    rest = tuple(outcome for outcome in outcomes if outcome != PREEMPTED)
+    text = {constant.value for constant in every if isinstance(constant, ast.Constant)}
+    unused = [word for word in rest if word not in text]
     near = f'return "{unused[0]}"' if len(unused) == 1 else "return ..."
     for block in _blocks(execute.body):
-        for at, each in enumerate(block):
-            if not isinstance(each, ast.Try) or each.finalbody:
+        for at, node in enumerate(block):
+            if not isinstance(node, ast.Try) or node.finalbody:
                 continue
-            open_ = [handler for handler in each.handlers
+            open_ = [handler for handler in node.handlers
                      if not ends.block(handler.body) and not _leaves(handler)]  # fmt: skip
-            names = _set_only_in(each, execute, every) if open_ else set()
+            names = _set_only_in(node, execute, every) if open_ else set()
             use = _first_use(block[at + 1 :], names) if names else None
             if use is None or module.text.is_filled(module.text.span(execute)):
                 continue
@@ -210,7 +214,7 @@ def _unbound(
 
 def _leaves(node: ast.AST) -> bool:
     """Whether code has a statement that leaves it, perhaps under a condition."""
-    return any(isinstance(each, _Leaves) for each in walk_code(node))
+    return any(isinstance(inner, _Leaves) for inner in walk_code(node))
 
 
 def _head(handler: ast.ExceptHandler, module: Module) -> str:
@@ -225,27 +229,27 @@ def _blocks(body: list[ast.stmt]) -> Iterator[list[ast.stmt]]:
     while todo:
         block = todo.pop()
         yield block
-        for each in block:
-            if isinstance(each, ast.If):
-                todo += [each.body, each.orelse]
-            elif isinstance(each, ast.With):
-                todo.append(each.body)
+        for node in block:
+            if isinstance(node, ast.If):
+                todo += [node.body, node.orelse]
+            elif isinstance(node, ast.With):
+                todo.append(node.body)
 
 
 def _set_only_in(node: ast.Try, execute: ast.FunctionDef, every: list[ast.AST]) -> set[str]:
     """The names that only the body of a `try` sets, behind or by a call that can fail."""
-    calls = [(each.lineno, each.col_offset) for line in node.body for each in walk_code(line)
-             if isinstance(each, ast.Call)]  # fmt: skip
-    inner = [each for line in (*node.body, *node.orelse) for each in walk_code(line)]
-    stores = [each for each in inner if isinstance(each, ast.Name)
-              and isinstance(each.ctx, ast.Store)]  # fmt: skip
-    lines = {name: min(each.lineno for each in stores if each.id == name)
-             for name in {each.id for each in stores}}  # fmt: skip
+    calls = [(inner.lineno, inner.col_offset) for line in node.body for inner in walk_code(line)
+             if isinstance(inner, ast.Call)]  # fmt: skip
+    inner = [inner for line in (*node.body, *node.orelse) for inner in walk_code(line)]
+    stores = [name for name in inner if isinstance(name, ast.Name)
+              and isinstance(name.ctx, ast.Store)]  # fmt: skip
+    lines = {name: min(store.lineno for store in stores if store.id == name)
+             for name in {store.id for store in stores}}  # fmt: skip
     found = {name for name, line in lines.items() if any(at <= line for at, _ in calls)}
-    mine = {id(each) for each in stores}
-    for each in every:
-        match each:
-            case ast.Name(id=name, ctx=ast.Store()) if id(each) not in mine:
+    mine = {id(store) for store in stores}
+    for item in every:
+        match item:
+            case ast.Name(id=name, ctx=ast.Store()) if id(item) not in mine:
                 found.discard(name)
             case ast.arg(arg=name) | ast.FunctionDef(name=name) | ast.ClassDef(name=name):
                 found.discard(name)
@@ -260,11 +264,11 @@ def _set_only_in(node: ast.Try, execute: ast.FunctionDef, every: list[ast.AST]) 
 
 def _first_use(block: list[ast.stmt], names: set[str]) -> ast.Name | None:
     """The first use of one of the names that every path through statements reaches."""
-    for each in block:
-        for part in _certain(each):
+    for node in block:
+        for part in _certain(node):
             if isinstance(part, ast.Name) and part.id in names and isinstance(part.ctx, ast.Load):
                 return part
-        if isinstance(each, ast.Try) or _leaves(each):
+        if isinstance(node, ast.Try) or _leaves(node):
             return None
     return None
 
@@ -299,4 +303,4 @@ def _can_raise(own: OwnClass, module: Module, called: ast.expr, library: UserCod
             found = own.method(name)
         case _:
             found = find_function(module, called, library)
-    return found is not None and any(isinstance(each, ast.Raise) for each in walk_code(found[1]))
+    return found is not None and any(isinstance(node, ast.Raise) for node in walk_code(found[1]))

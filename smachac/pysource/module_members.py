@@ -65,16 +65,16 @@ def _uncalled(
     for function in walk_code(node):
         if not isinstance(function, _Function):
             continue
-        values = {id(each): each for each in _values(function, tried)}
+        values = {id(value): value for value in _values(function, tried)}
         kept = _kept(function, values)
-        for each in (*values.values(), *kept):
-            head = first_name(each)
-            if head is None or head in bound or not _may_be_function(module, each, library):
+        for value in (*values.values(), *kept):
+            head = first_name(value)
+            if head is None or head in bound or not _may_be_function(module, value, library):
                 continue
-            found = find_function(module, each, library)
+            found = find_function(module, value, library)
             if found is None or found[1].decorator_list:
                 continue
-            span = module.text.span(each)
+            span = module.text.span(value)
             given = found[1].args
             needed = len(given.posonlyargs) + len(given.args) > len(given.defaults)
             near = f"{span.text}({'...' if needed or None in given.kw_defaults else ''})"
@@ -90,8 +90,8 @@ def _may_be_function(module: Module, node: _Reference, library: UserCode) -> boo
         match module.names.get(node.id, ()):
             case (ast.ImportFrom() as imported,):
                 dotted = source_module(module, imported)
-                name = next(each.name for each in imported.names
-                            if (each.asname or each.name) == node.id)  # fmt: skip
+                name = next(name.name for name in imported.names
+                            if (name.asname or name.name) == node.id)  # fmt: skip
             case (ast.FunctionDef(),):
                 return True
             case _:
@@ -109,9 +109,9 @@ def _texts(dotted: str | None, library: UserCode) -> list[str]:
 def _values(function: ast.AST, tried: Set[ast.AST]) -> Iterator[_Reference]:
     """The names in a function whose value is a number, a truth value or a value of the userdata,
     or that are alone in a line."""
-    for each in walk_code(function):
+    for node in walk_code(function):
         found: list[ast.expr] = []
-        match each:
+        match node:
             case ast.BinOp(left=left, right=right):
                 found = [left, right]
             case ast.AugAssign(value=value) | ast.UnaryOp(op=ast.USub(), operand=value):
@@ -125,27 +125,27 @@ def _values(function: ast.AST, tried: Set[ast.AST]) -> Iterator[_Reference]:
                 targets=[ast.Attribute(value=ast.Name(id="userdata" | "ud"))], value=value
             ):
                 found = [value]
-            case ast.Expr(value=value) if each not in tried:
+            case ast.Expr(value=value) if node not in tried:
                 found = [value]
         yield from (one for one in found if isinstance(one, _Reference))
 
 
 def _kept(function: ast.AST, values: dict[int, _Reference]) -> Iterator[_Reference]:
     """The values of the variables among these names that have one value and are never called."""
-    used = {each.id for each in values.values() if isinstance(each, ast.Name)}
+    used = {value.id for value in values.values() if isinstance(value, ast.Name)}
     if not used:
         return
     stored: dict[str, int] = {}
-    for each in walk_code(function):
-        match each:
+    for node in walk_code(function):
+        match node:
             case ast.Name(id=name, ctx=ast.Store() | ast.Del()):
                 stored[name] = stored.get(name, 0) + 1
             case ast.arg(arg=name) | ast.Call(func=ast.Name(id=name)):
                 stored[name] = 2
             case ast.Global(names=names) | ast.Nonlocal(names=names):
                 stored.update(dict.fromkeys(names, 2))
-    for each in walk_code(function):
-        match each:
+    for node in walk_code(function):
+        match node:
             case ast.Assign(targets=[ast.Name(id=name)], value=value):
                 if name in used and stored[name] == 1 and isinstance(value, _Reference):
                     yield value
@@ -160,13 +160,13 @@ def _missing(
     """The attributes of imported modules of the project that these do not define; `done` are names
     that have a fault. A module is parsed only if its text does not contain the name."""
     words: dict[str, tuple[str, set[str]]] = {}
-    for each in walk_code(node):
-        match each:
+    for inner in walk_code(node):
+        match inner:
             case ast.Attribute(value=ast.Name() | ast.Attribute() as owner, attr=name):
                 head = first_name(owner)
             case _:
                 continue
-        if head is None or head not in module.names or head in done or each in module.tried:
+        if head is None or head not in module.names or head in done or inner in module.tried:
             continue
         if head in module.rebound:
             continue
@@ -179,7 +179,7 @@ def _missing(
             continue
         fault = _absent(dotted, name, module, library)
         if fault is not None:
-            span = module.text.span(each)
+            span = module.text.span(inner)
             place = Span(span.source, span.end - len(name), span.end)
             near, file, more = fault
             yield ClassFault(kind=NO_MEMBER, name=Word(name, place), near=near, owner=file,
@@ -209,11 +209,11 @@ def _absent(
     if isinstance(above, Module) and (above.dynamic or last in above.names):
         return None  # perhaps an object of the package with the name of the module
     path = dotted.replace(".", "/")
-    inside = {each.partition(".")[0] for each in library.code_names(path)} if other.package else ()
+    inside = {name.partition(".")[0] for name in library.code_names(path)} if other.package else ()
     if name in inside or "__getattr__" in other.names:
         return None
-    public = [each for each in other.names if not each.startswith("_")]
-    functions = [each for each in public if isinstance(other.names[each][-1], ast.FunctionDef)]
+    public = [name for name in other.names if not name.startswith("_")]
+    functions = [text for text in public if isinstance(other.names[text][-1], ast.FunctionDef)]
     more = f"its functions are {listed(functions)}" if functions else "define it in the module"
     near = guesser(sorted(public))(name)
     return near, file_of(other), more

@@ -138,7 +138,7 @@ class Module:
     def compared(self) -> frozenset[str]:
         """The attributes in comparisons that are statements of their own (`compared`)."""
         found = filter(None, map(compared, self.nodes))
-        return frozenset(each.left.attr for each in found if isinstance(each.left, ast.Attribute))
+        return frozenset(node.left.attr for node in found if isinstance(node.left, ast.Attribute))
 
     @cached_property
     def variables(self) -> frozenset[str]:
@@ -189,7 +189,7 @@ class OwnClass:
                 case ():
                     continue
                 case (*_, ast.FunctionDef() as last) as bound:
-                    plain = all(isinstance(each, ast.FunctionDef) for each in bound)
+                    plain = all(isinstance(node, ast.FunctionDef) for node in bound)
                     return (module, last) if plain and last in node.body else None
                 case _:
                     return None
@@ -215,11 +215,11 @@ class OwnClass:
                     targets = method.targets if isinstance(method, ast.Assign) else [method.target]
                     value = None if isinstance(method, ast.AugAssign) else method.value
                     for target in targets:
-                        for each in walk_code(target):
-                            if isinstance(each, ast.Attribute) and _is_self(each.value):
-                                whole = value if each is target else None
-                                entry = (module, whole, module.text.span(each))
-                                found.setdefault(each.attr, []).append(entry)
+                        for inner in walk_code(target):
+                            if isinstance(inner, ast.Attribute) and _is_self(inner.value):
+                                whole = value if inner is target else None
+                                entry = (module, whole, module.text.span(inner))
+                                found.setdefault(inner.attr, []).append(entry)
         return found
 
 
@@ -251,13 +251,13 @@ def of_other_objects(node: ast.ClassDef) -> set[ast.AST]:
     in a method that have a parameter of this name."""
     found: set[ast.AST] = set()
     own = {*node.body}
-    for each in walk_code(node):
-        inner = each is not node and isinstance(each, ast.ClassDef)
-        if isinstance(each, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
-            given = [arg.arg for arg in walk_code(each.args) if isinstance(arg, ast.arg)]
-            inner = each not in own and "self" in given
-        if inner and each not in found:
-            found.update(walk_code(each))
+    for other in walk_code(node):
+        inner = other is not node and isinstance(other, ast.ClassDef)
+        if isinstance(other, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+            given = [arg.arg for arg in walk_code(other.args) if isinstance(arg, ast.arg)]
+            inner = other not in own and "self" in given
+        if inner and other not in found:
+            found.update(walk_code(other))
     return found
 
 
@@ -334,14 +334,14 @@ def absent_module(word: Word, library: UserCode) -> ClassFault | None:
     parts = word.text.split(".")
     for at, part in enumerate(parts):
         here = library.code_names("/".join(parts[:at]))
-        names = sorted({each.removesuffix(".py") for each in here if is_module(each)})
+        names = sorted({text.removesuffix(".py") for text in here if is_module(text)})
         if part in names:
             continue
-        if any(each.startswith(f"{part}.") for each in here):  # an extension module
+        if any(text.startswith(f"{part}.") for text in here):  # an extension module
             return None
         guess = guesser(names)
         near = guess(part) if at else guess.sure(part)
-        if near is None and (not at or not any(_is_package_file(each) for each in here)):
+        if near is None and (not at or not any(_is_package_file(text) for text in here)):
             return None
         meant = ".".join([*parts[:at], near, *parts[at + 1 :]]) if near is not None else None
         return ClassFault(kind=NO_MODULE, name=word, near=meant)
@@ -372,8 +372,8 @@ def find_class(
             return ClassFault(kind=NO_CLASS, name=Word(name, top), near=guesser(classes)(name))
         case (ast.ImportFrom() as imported,) if steps and imported in module.text.tree.body:
             return _imported(module, imported, name, library, steps)
-        case (*_, ast.ClassDef() as last) if all(isinstance(each, ast.ClassDef) for each in bound):
-            at_top = all(each in module.text.tree.body for each in bound)
+        case (*_, ast.ClassDef() as last) if all(isinstance(node, ast.ClassDef) for node in bound):
+            at_top = all(node in module.text.tree.body for node in bound)
             return (module, last) if at_top or len(bound) == 1 else None
     return None
 
@@ -389,8 +389,8 @@ def find_function(
                 case (ast.FunctionDef() as function,):
                     return module, function
                 case (ast.ImportFrom() as imported,) if imported in module.text.tree.body:
-                    own = next(each.name for each in imported.names
-                               if (each.asname or each.name) == name)  # fmt: skip
+                    own = next(alias.name for alias in imported.names
+                               if (alias.asname or alias.name) == name)  # fmt: skip
                     return _function_in(source_module(module, imported), own, library)
         case ast.Attribute(value=ast.Name() | ast.Attribute() as owner, attr=name):
             imported_module = module_name(module, ast.unparse(owner))
@@ -416,7 +416,7 @@ def module_name(module: Module, written: str) -> str | None:
     head, _, rest = written.partition(".")
     match module.names.get(head, ()):
         case (ast.ImportFrom() as node,) if node in module.text.tree.body and not rest:
-            own = next(each.name for each in node.names if (each.asname or each.name) == head)
+            own = next(name.name for name in node.names if (name.asname or name.name) == head)
             return f"{source_module(module, node)}.{own}".lstrip(".")
         case (ast.Import() as node,) if node in module.text.tree.body:
             for alias in node.names:
@@ -430,7 +430,7 @@ def module_name(module: Module, written: str) -> str | None:
 def _imported(
     module: Module, node: ast.ImportFrom, name: str, library: UserCode, steps: int
 ) -> tuple[Module, ast.ClassDef] | ClassFault | None:
-    own = next(each.name for each in node.names if (each.asname or each.name) == name)
+    own = next(alias.name for alias in node.names if (alias.asname or alias.name) == name)
     other = load_module(source_module(module, node), library)
     if not isinstance(other, Module):
         return other
@@ -472,14 +472,14 @@ def with_bases(module: Module, node: ast.ClassDef, library: UserCode) -> OwnClas
             root = "object"
         elif isinstance(base, ast.Name):
             found = find_class(module, base.id, library)
-            again = isinstance(found, tuple) and any(found[1] is each for _, each in classes)
+            again = isinstance(found, tuple) and any(found[1] is class_ for _, class_ in classes)
             if not isinstance(found, tuple) or again or len(classes) == MOST_STEPS:
                 root = "unknown"
             else:
                 classes.append(found)
         else:
             root = "unknown"
-    names = tuple(names_of(each.body)[0] for _, each in classes)
+    names = tuple(names_of(class_.body)[0] for _, class_ in classes)
     return OwnClass(classes=tuple(classes), names=names, root=root)
 
 
@@ -489,15 +489,15 @@ def is_smach_state(module: Module, base: ast.expr) -> bool:
     match base:
         case ast.Attribute(value=ast.Name(id=owner), attr="State"):
             bound = module.names.get(owner, ())
-            return owner == "smach" or any("smach" in _imports(each, owner) for each in bound)
+            return owner == "smach" or any("smach" in _imports(node, owner) for node in bound)
         case ast.Name(id=name):
             bound = module.names.get(name, ())
             if not bound:
                 return name == "State" and not module.name
-            froms = [each for each in bound if isinstance(each, ast.ImportFrom)]
-            own = {alias.name for each in froms for alias in each.names
+            froms = [node for node in bound if isinstance(node, ast.ImportFrom)]
+            own = {alias.name for node in froms for alias in node.names
                    if (alias.asname or alias.name) == name}  # fmt: skip
-            modules = {(each.module or "").rpartition(".")[2] for each in froms}
+            modules = {(node.module or "").rpartition(".")[2] for node in froms}
             return len(froms) == len(bound) and own == {"State"} and modules <= {"smach", "state"}
     return False
 
@@ -506,9 +506,9 @@ def _imports(node: ast.AST, name: str) -> set[str]:
     """The last parts of what a statement imports under a name."""
     names = node.names if isinstance(node, ast.Import | ast.ImportFrom) else ()
     return {
-        each.name.rpartition(".")[2]
-        for each in names
-        if (each.asname or each.name.partition(".")[0]) == name
+        alias.name.rpartition(".")[2]
+        for alias in names
+        if (alias.asname or alias.name.partition(".")[0]) == name
     }
 
 
@@ -562,12 +562,12 @@ def names_of(body: list[ast.stmt]) -> tuple[Names, bool]:
 def _own(body: list[ast.stmt]) -> Iterator[tuple[ast.AST, ast.AST]]:
     """The nodes of a body in their order, without those inside functions and classes, each with
     its innermost statement."""
-    todo: list[tuple[ast.AST, ast.AST]] = [(each, each) for each in reversed(body)]
+    todo: list[tuple[ast.AST, ast.AST]] = [(node, node) for node in reversed(body)]
     while todo:
         statement, node = todo.pop()
         yield statement, node
         if not isinstance(node, _INNER):
             children = reversed([*ast.iter_child_nodes(node)])
             todo.extend(
-                (each if isinstance(each, ast.stmt) else statement, each) for each in children
+                (child if isinstance(child, ast.stmt) else statement, child) for child in children
             )

@@ -36,9 +36,9 @@ def file_with(
 def _files(lacking: str, suffixes: tuple[str, ...], library: UserCode) -> Iterator[str]:
     """The files in the folder of a file, in the folders around it, and in those of the project."""
     folder = lacking.rpartition("/")[0]
-    every: Sequence[str] = [each for each in library.code_names("") if "." not in each]
+    every: Sequence[str] = [name for name in library.code_names("") if "." not in name]
     around = ["/".join(folder.split("/")[:end]) for end in range(1, folder.count("/") + 2)]
-    for each in dict.fromkeys([folder, *around, *every, ""]):
-        for name in library.code_names(each):
+    for fromkey in dict.fromkeys([folder, *around, *every, ""]):
+        for name in library.code_names(fromkey):
             if name.endswith(suffixes):
-                yield f"{each}/{name}" if each else name
+                yield f"{fromkey}/{name}" if fromkey else name

@@ -66,8 +66,11 @@ def uncalled_members(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
     """The methods of objects of plain classes without `()`, in a condition or alone in a line."""
     objects = Objects(own, library)
     for module, node in own.classes:
-        set_here = {each.attr for each in walk_code(node) if isinstance(each, ast.Attribute)
-                    and not isinstance(each.ctx, ast.Load)}  # fmt: skip
+        set_here = {
+            attribute.attr
+            for attribute in walk_code(node)
+            if isinstance(attribute, ast.Attribute) and not isinstance(attribute.ctx, ast.Load)
+        }
         kinds: dict[ast.expr, FaultKind] = {}
         kinds.update((part, kind) for kind, part in _conditions_and_lines(node))
         for use in objects.uses(module, node, kinds):
@@ -139,7 +142,7 @@ class Objects:
         """The method of an object in an attribute of `self` that an expression names."""
         for use in self.uses(module, node, [called]):
             body = use.definition.body
-            bound = [each for each in body if getattr(each, "name", "") == use.member]
+            bound = [node for node in body if getattr(node, "name", "") == use.member]
             if len(bound) == 1 and isinstance(bound[0], ast.FunctionDef):
                 return bound[0]
         return None
@@ -147,8 +150,8 @@ class Objects:
 
 def _conditions_and_lines(node: ast.ClassDef) -> Iterator[tuple[FaultKind, ast.expr]]:
     """The expressions of which code uses the truth alone, and those alone in a line."""
-    for each in walk_code(node):
-        match each:
+    for inner in walk_code(node):
+        match inner:
             case (
                 ast.If(test=test)
                 | ast.While(test=test)
@@ -164,11 +167,13 @@ def _conditions_and_lines(node: ast.ClassDef) -> Iterator[tuple[FaultKind, ast.e
 def _is_method(node: ast.ClassDef, name: str) -> bool:
     """Whether a name of a class is a method without decorators, and nothing else."""
     methods = [
-        each for each in node.body if isinstance(each, ast.FunctionDef) and each.name == name
+        function
+        for function in node.body
+        if isinstance(function, ast.FunctionDef) and function.name == name
     ]
-    set_ = any(isinstance(each, ast.Attribute | ast.Name) and isinstance(each.ctx, ast.Store)
-               and name in (getattr(each, "attr", ""), getattr(each, "id", ""))
-               for each in walk_code(node))  # fmt: skip
+    set_ = any(isinstance(inner, ast.Attribute | ast.Name) and isinstance(inner.ctx, ast.Store)
+               and name in (getattr(inner, "attr", ""), getattr(inner, "id", ""))
+               for inner in walk_code(node))  # fmt: skip
     return len(methods) == 1 and not methods[0].decorator_list and not set_
 
 
@@ -184,8 +189,8 @@ def _help(methods: list[str]) -> str:
 
 def _bound(node: ast.ClassDef) -> Iterator[str]:
     """The names that the code of a class binds itself."""
-    for each in walk_code(node):
-        match each:
+    for inner in walk_code(node):
+        match inner:
             case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
                 yield name
             case ast.ExceptHandler(name=str(name)) | ast.alias(name=name):
@@ -196,16 +201,16 @@ def _of_module(module: Module, name: str, library: UserCode) -> _Entry | None:
     """The only value of a name of a module, also where the module imports it."""
     match module.names.get(name, ()):
         case (ast.ImportFrom() as imported,) if imported in module.text.tree.body:
-            own = next(each.name for each in imported.names
-                       if (each.asname or each.name) == name)  # fmt: skip
+            own = next(alias.name for alias in imported.names
+                       if (alias.asname or alias.name) == name)  # fmt: skip
             other = load_module(source_module(module, imported), library)
             if not isinstance(other, Module) or other.dynamic:
                 return None
             module, name = other, own
     match module.names.get(name, ()):
         case (ast.Assign(targets=[ast.Name() as target], value=ast.Call() as value) as line,):
-            shared = any(isinstance(each, ast.Global) and name in each.names
-                         for each in module.nodes)  # fmt: skip
+            shared = any(isinstance(node, ast.Global) and name in node.names
+                         for node in module.nodes)  # fmt: skip
             if line in module.text.tree.body and not shared:
                 return module, value, module.text.span(target)
     return None
@@ -226,7 +231,7 @@ def _plain_class(entry: _Entry, library: UserCode) -> tuple[Module, ast.ClassDef
 
 def has_no_base(node: ast.ClassDef) -> bool:
     """Whether a class has no base class, decorator or metaclass."""
-    plain = all(isinstance(each, ast.Name) and each.id == "object" for each in node.bases)
+    plain = all(isinstance(base, ast.Name) and base.id == "object" for base in node.bases)
     return plain and not node.keywords and not node.decorator_list
 
 
@@ -235,11 +240,13 @@ def shows_all(module: Module, name: str, other: Module, node: ast.ClassDef) -> b
     all names that it has itself."""
     if other.text.fillings(other.text.span(node)):
         return False
-    used = {each.id for each in walk_code(node) if isinstance(each, ast.Name)}
-    used |= {each.attr for each in walk_code(node) if isinstance(each, ast.Attribute)}
-    bound = {each.name for each in node.body if isinstance(each, ast.FunctionDef)}
+    used = {name.id for name in walk_code(node) if isinstance(name, ast.Name)}
+    used |= {
+        attribute.attr for attribute in walk_code(node) if isinstance(attribute, ast.Attribute)
+    }
+    bound = {function.name for function in node.body if isinstance(function, ast.FunctionDef)}
     late = {"setattr", "vars", "__dict__", "locals", "exec", "globals"} & used
-    outside = any(_sets(each, name) for one in (module, other) for each in one.nodes)
+    outside = any(_sets(node, name) for one in (module, other) for node in one.nodes)
     return not (late or outside or LATE & bound)
 
 
@@ -256,14 +263,17 @@ def _sets(node: ast.AST, name: str) -> bool:
 def members_of(node: ast.ClassDef) -> tuple[set[str], list[str]]:
     """The names of a class and of the attributes of its objects, and its public methods."""
     names = set[str]()
-    for each in walk_code(node):
-        match each:
+    for inner in walk_code(node):
+        match inner:
             case ast.Attribute(attr=name, ctx=ast.Store()) | ast.Name(id=name, ctx=ast.Store()):
                 names.add(name)
             case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
                 names.add(name)
             case ast.ClassDef(name=name) | ast.alias(asname=str(name)) | ast.alias(name=name):
                 names.add(name)
-    methods = [each.name for each in node.body
-               if isinstance(each, ast.FunctionDef) and not each.name.startswith("_")]  # fmt: skip
+    methods = [
+        function.name
+        for function in node.body
+        if isinstance(function, ast.FunctionDef) and not function.name.startswith("_")
+    ]
     return names, methods

@@ -53,10 +53,10 @@ class PathEnds:
             case ast.Try(body=body, handlers=handlers, orelse=orelse, finalbody=final):
                 whole = self.block(body) or self.block(orelse)
                 return self.block(final) or (
-                    whole and all(self.block(each.body) for each in handlers)
+                    whole and all(self.block(handler.body) for handler in handlers)
                 )
             case ast.Match(cases=cases):
-                return self._covers(node) and all(self.block(each.body) for each in cases)
+                return self._covers(node) and all(self.block(case_.body) for case_ in cases)
             case ast.Assert(test=ast.Constant(value=test)):
                 return not test
             case ast.Expr(value=ast.Call(func=ast.Name() | ast.Attribute() as function)):
@@ -77,10 +77,12 @@ class PathEnds:
             case ast.With(body=inner):
                 return self.open_end(inner)
             case ast.Match(cases=cases):
-                case = next((each for each in cases if not self.block(each.body)), None)
+                case = next((case_ for case_ in cases if not self.block(case_.body)), None)
                 return ("match", last) if case is None else self.open_end(case.body)
             case ast.Try(handlers=handlers, body=inner):
-                handler = next((each for each in handlers if not self.block(each.body)), None)
+                handler = next(
+                    (handler for handler in handlers if not self.block(handler.body)), None
+                )
                 if self.block(inner) and handler is not None:
                     return "except", handler
                 if handler is None:
@@ -119,7 +121,7 @@ class PathEnds:
         """Whether a name is that of a function of itertools."""
         bound = self.names.get(name, ())
         return bool(bound) and all(
-            isinstance(each, ast.ImportFrom) and each.module == "itertools" for each in bound
+            isinstance(node, ast.ImportFrom) and node.module == "itertools" for node in bound
         )
 
     def _covers(self, node: ast.Match) -> bool:
@@ -131,7 +133,9 @@ class PathEnds:
             if case.guard is None
             for plain in _alternatives(case.pattern)
         ]
-        singletons = {each.value for each in patterns if isinstance(each, ast.MatchSingleton)}
+        singletons = {
+            pattern.value for pattern in patterns if isinstance(pattern, ast.MatchSingleton)
+        }
         if {True, False} <= singletons:
             return True
         members: dict[str, set[str]] = {}
@@ -153,9 +157,9 @@ class PathEnds:
         """The members of an enumeration of the module; empty if it is not known."""
         match self.names.get(name, ()):
             case (ast.ClassDef(body=body),):
-                assigned = [each for each in body if isinstance(each, ast.Assign)]
-                targets = [target for each in assigned for target in each.targets]
-                return {each.id for each in targets if isinstance(each, ast.Name)}
+                assigned = [assignment for assignment in body if isinstance(assignment, ast.Assign)]
+                targets = [target for assignment in assigned for target in assignment.targets]
+                return {target.id for target in targets if isinstance(target, ast.Name)}
         return set()
 
 
@@ -163,8 +167,8 @@ def _alternatives(pattern: ast.pattern) -> Iterator[ast.pattern]:
     """The patterns one of which a value must match, without the names that they bind."""
     match pattern:
         case ast.MatchOr(patterns=several):
-            for each in several:
-                yield from _alternatives(each)
+            for node in several:
+                yield from _alternatives(node)
         case ast.MatchAs(pattern=inner) if inner is not None:
             yield from _alternatives(inner)
         case _:

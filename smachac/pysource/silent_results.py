@@ -54,18 +54,18 @@ def silent_results(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
 def _used_calls(method: ast.FunctionDef) -> Iterator[ast.Call]:
     """The calls whose result is used as a value, also over a local variable that has one value."""
     every = [*walk_code(method)]
-    names = [each for each in every if isinstance(each, ast.Name)]
-    bound = Counter(each.id for each in names if not isinstance(each.ctx, ast.Load))
-    bound.update(each.arg for each in every if isinstance(each, ast.arg))
+    names = [name for name in every if isinstance(name, ast.Name)]
+    bound = Counter(name.id for name in names if not isinstance(name.ctx, ast.Load))
+    bound.update(argument.arg for argument in every if isinstance(argument, ast.arg))
     local: dict[str, ast.Call] = {}
-    for each in every:
-        match each:
+    for node in every:
+        match node:
             case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call() as call):
                 if bound[name] == 1:
                     local[name] = call
-    alone = {each.value for each in every if isinstance(each, ast.Expr)}
-    for each in every:
-        for value in _values(each) if each not in alone or isinstance(each, ast.Call) else ():
+    alone = {node.value for node in every if isinstance(node, ast.Expr)}
+    for node in every:
+        for value in _values(node) if node not in alone or isinstance(node, ast.Call) else ():
             if isinstance(value, ast.Call):
                 yield value
             elif isinstance(value, ast.Name) and value.id in local:
@@ -104,10 +104,10 @@ def called_function(
             return None if name in own.assigned() else own.method(name)
         case ast.Name(id=head) | ast.Attribute(value=ast.Name(id=head)):
             bound = any(
-                (isinstance(each, ast.arg) and each.arg == head)
-                or (isinstance(each, ast.Name) and each.id == head
-                    and not isinstance(each.ctx, ast.Load))
-                for each in walk_code(method)
+                (isinstance(node, ast.arg) and node.arg == head)
+                or (isinstance(node, ast.Name) and node.id == head
+                    and not isinstance(node.ctx, ast.Load))
+                for node in walk_code(method)
             )  # fmt: skip
             return (
                 None
@@ -119,9 +119,11 @@ def called_function(
 
 def is_silent(function: ast.FunctionDef) -> bool:
     """Whether a function has code, and none of its paths returns a value."""
-    if not is_plain(function) or any(each.value is not None for each in returns_of(function.body)):
+    if not is_plain(function) or any(
+        returned.value is not None for returned in returns_of(function.body)
+    ):
         return False
-    real = [each for each in function.body if not _is_of_stub(each)]
+    real = [node for node in function.body if not _is_of_stub(node)]
     return bool(real) and not isinstance(function.body[-1], ast.Raise | ast.While)
 
 

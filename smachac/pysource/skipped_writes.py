@@ -74,13 +74,13 @@ class SkippedWrites:
     def whole(self) -> Skips:
         """The keys that a call of the function can skip."""
         ends = [*self.returns.values(), *([] if self.end is None else [self.end])]
-        sure = frozenset.intersection(*(each.sure for each in ends)) if ends else NONE
+        sure = frozenset.intersection(*(end.sure for end in ends)) if ends else NONE
         found: dict[str, Word] = {}
-        for node, each in self.returns.items():
+        for node, returned in self.returns.items():
             ever = NONE.union(*(end.sure for end in ends))
-            found |= {key: self.place("return", node) for key in ever - each.sure}
-        for each in ends:
-            found |= each.skipped
+            found |= {key: self.place("return", node) for key in ever - returned.sure}
+        for end in ends:
+            found |= end.skipped
         return {key: place for key, place in found.items() if key not in sure}
 
     def _merged(
@@ -88,16 +88,16 @@ class SkippedWrites:
     ) -> Paths | None:
         """After paths that meet; None if none of them gets there. Without a node, a key that only
         some of them set is not skipped."""
-        reached = [each for each in several if each is not None]
+        reached = [paths for paths in several if paths is not None]
         if not reached:
             return None
-        sure = frozenset.intersection(*(each.sure for each in reached))
+        sure = frozenset.intersection(*(paths.sure for paths in reached))
         skips: dict[str, Word] = {}
-        for each in reached:
-            if node is not None and each.sure != sure:
-                skips |= dict.fromkeys(each.sure - sure, self.place(kind, node))
-        for each in reached:
-            skips |= each.skipped
+        for paths in reached:
+            if node is not None and paths.sure != sure:
+                skips |= dict.fromkeys(paths.sure - sure, self.place(kind, node))
+        for paths in reached:
+            skips |= paths.skipped
         return Paths(sure, skips)
 
     def _block(self, body: list[ast.stmt], before: Paths | None) -> Paths | None:
@@ -142,7 +142,7 @@ class SkippedWrites:
 
     def _if(self, node: ast.If, head: Paths, *, chained: bool = False) -> Paths | None:
         head = head.after(self._tested(node.test), {})
-        conditions = {_condition(each) for each in _parts(node.test)}
+        conditions = {_condition(part) for part in _parts(node.test)}
         examined = not conditions.isdisjoint(self._examined)
         self._examined |= conditions
         then = self._block(node.body, head)
@@ -191,10 +191,10 @@ class SkippedWrites:
     def _surely(self, body: list[ast.stmt]) -> frozenset[str]:
         """The keys that statements set before anything in them can raise an exception."""
         found = NONE
-        for each in body:
-            if any(isinstance(node, ast.Call | ast.Subscript) for node in walk_code(each)):
+        for node in body:
+            if any(isinstance(node, ast.Call | ast.Subscript) for node in walk_code(node)):
                 break
-            found |= self.effects(each)
+            found |= self.effects(node)
         return found
 
 

@@ -122,7 +122,7 @@ def call_faults(machine: Machine) -> Iterator[StateFault]:
         facts = type_.class_facts if type_ is not None else None
         if facts is None or facts.state_call is None or not isinstance(leaf, Leaf):
             continue
-        given = {each.name for each in leaf.written}.intersection(CALL_ARGUMENTS)
+        given = {variable.name for variable in leaf.written}.intersection(CALL_ARGUMENTS)
         fault = _call_fault(facts.state_call, given)
         if fault is not None:
             del left[leaf.type]
@@ -133,10 +133,10 @@ def call_faults(machine: Machine) -> Iterator[StateFault]:
 
 def _call_fault(call: StateCall, given: set[str]) -> ClassFault | None:
     """What is wrong with a call that passes these arguments by their names."""
-    known = {each.word.text for each in call.parameters}
-    for each in call.parameters:
-        if each.required and each.word.text not in given:
-            return ClassFault(kind=NOT_PASSED, name=Word(each.word.text, call.place))
+    known = {parameter.word.text for parameter in call.parameters}
+    for parameter in call.parameters:
+        if parameter.required and parameter.word.text not in given:
+            return ClassFault(kind=NOT_PASSED, name=Word(parameter.word.text, call.place))
     for name in CALL_ARGUMENTS:
         if name in given and name not in known:
             return ClassFault(kind=NOT_ACCEPTED, name=Word(name, call.place))

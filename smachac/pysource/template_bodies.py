@@ -119,7 +119,7 @@ def _call_fault(
     unknown = _unknown_class(text, body, name, leaf, names)
     if unknown is not None:
         return ClassFault(kind=UNDEFINED_NAME, name=unknown, near=name), name
-    parameters = [each.arg for each in maker.args.args[1:]]
+    parameters = [argument.arg for argument in maker.args.args[1:]]
     start = _callee(name, leaf)
     unfit = _argument_fault(text, body, name, maker, leaf)
     if unfit is not None:
@@ -135,11 +135,11 @@ def _call_fault(
         at = found.end()
         if found["end"] != ",":
             break
-    order = [each["name"] for each in given]
+    order = [match_["name"] for match_ in given]
     due = parameters[: len(order)]
     if order != due and sorted(order) == sorted(due) and len({*order}) == len(order):
-        by_name = {each["name"]: each[0].rstrip(" ,)\n\t") for each in given}
-        near = ", ".join(by_name[each] for each in due)
+        by_name = {match_["name"]: match_[0].rstrip(" ,)\n\t") for match_ in given}
+        near = ", ".join(by_name[text] for text in due)
         near = f"{call[0]}{near})" if given[-1]["end"] == ")" else near
         place = Span(template, given[0].start(), given[-1].start("end"))
         gets = [f"`{wanted}` gets the value of `{name_}`"
@@ -147,10 +147,12 @@ def _call_fault(
         word = Word(place.text, place)
         more = ", and ".join(gets[:2])
         return ClassFault(kind=ARGUMENT_ORDER, name=word, near=near, more=more), name
-    for each in given:
-        value = variable(leaf, each["name"]) if not (each["quote"] or each["filter"]) else None
+    for match_ in given:
+        value = (
+            variable(leaf, match_["name"]) if not (match_["quote"] or match_["filter"]) else None
+        )
         if isinstance(value, str) and value.isidentifier() and value not in names:
-            place = Span(template, each.start(), each.start("end"))
+            place = Span(template, match_.start(), match_.start("end"))
             word = Word(place.text.rstrip(), place)
             near = f"'{word.text}'"
             return ClassFault(kind=NO_QUOTES, name=word, near=near, more=value), name
@@ -166,11 +168,11 @@ def _unknown_class(
         return None
     guess = guesser([name])
     found = [
-        Word(each.func.id, span)
-        for each in walk_code(text.tree)
-        if isinstance(each, ast.Call) and isinstance(each.func, ast.Name)
-        if (span := text.span(each.func)) and body.start(1) <= span.start < body.end(1)
-        if each.func.id not in names and not text.is_filled(span)
+        Word(node.func.id, span)
+        for node in walk_code(text.tree)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+        if (span := text.span(node.func)) and body.start(1) <= span.start < body.end(1)
+        if node.func.id not in names and not text.is_filled(span)
     ]
     return found[0] if len(found) == 1 and guess.sure(found[0].text) else None
 
@@ -188,12 +190,12 @@ def _maker(template: Source) -> tuple[str, ast.FunctionDef, PythonText] | None:
         module = template_module(template)
     except (RecursionError, MemoryError, ValueError):
         return None
-    classes = [each for each in module.text.tree.body if isinstance(each, ast.ClassDef)
+    classes = [class_ for class_ in module.text.tree.body if isinstance(class_, ast.ClassDef)
                ] if module is not None else []  # fmt: skip
     if module is None or len(classes) != 1:
         return None
-    makers = [each for each in classes[0].body
-              if isinstance(each, ast.FunctionDef) and each.name == "__init__"]  # fmt: skip
+    makers = [function for function in classes[0].body
+              if isinstance(function, ast.FunctionDef) and function.name == "__init__"]  # fmt: skip
     if len(makers) != 1:
         return None
     return classes[0].name, makers[0], module.text
@@ -205,11 +207,11 @@ def _argument_fault(
     """An argument of the call of the constructor that this does not have, or lacks."""
     call = _only_call(text, body, _callee(name, leaf))
     taken = maker.args
-    known = [each.arg for each in (*taken.args[1:], *taken.kwonlyargs)]
+    known = [argument.arg for argument in (*taken.args[1:], *taken.kwonlyargs)]
     if call is None or maker.decorator_list or text.is_filled(text.span(maker)):
         return None
-    positional = [each.arg for each in (*taken.posonlyargs, *taken.args)][1:]
-    given = {each.arg for each in call.keywords}
+    positional = [argument.arg for argument in (*taken.posonlyargs, *taken.args)][1:]
+    given = {other.arg for other in call.keywords}
     passed = {*positional[: len(call.args)], *given}
     for argument in call.keywords:
         word = argument.arg
@@ -217,23 +219,26 @@ def _argument_fault(
             continue
         start = text.offset(argument.lineno, argument.col_offset)
         span = Span(text.source, start, start + len(word))
-        left = [each for each in known if each not in passed]
+        left = [text for text in known if text not in passed]
         near = left[0] if len(left) == 1 else guesser(left)(word)
-        more = ", ".join(f"`{each}`" for each in known) or "only `self`"
+        more = ", ".join(f"`{text}`" for text in known) or "only `self`"
         if not text.is_filled(span):
             return ClassFault(kind=NO_KEYWORD, name=Word(word, span), near=near, more=more)
     if None in given or not _is_counted(text, call, {*known, *positional}):
         return None
     if len(call.args) > len(positional) and taken.vararg is None:
         span = text.span(call.args[len(positional)])
-        more = ", ".join(f"`{each}`" for each in positional) or "only `self`"
+        more = ", ".join(f"`{text}`" for text in positional) or "only `self`"
         return ClassFault(kind=TOO_MANY_ARGUMENTS, name=Word(span.text, span), owner=name,
                           more=more)  # fmt: skip
     due = positional[: len(positional) - len(taken.defaults)]
-    due += [each.arg for each, default in zip(taken.kwonlyargs, taken.kw_defaults, strict=True)
-            if default is None]  # fmt: skip
-    unused = {each.name for each in (*leaf.written, *leaf.variables)}  # SM003
-    missing = [each for each in due if each not in passed and each not in unused]
+    due += [
+        argument.arg
+        for argument, default in zip(taken.kwonlyargs, taken.kw_defaults, strict=True)
+        if default is None
+    ]
+    unused = {other.name for other in (*leaf.written, *leaf.variables)}  # SM003
+    missing = [text for text in due if text not in passed and text not in unused]
     span = text.span(call.func)
     if not text.is_filled(Span(span.source, span.end - 1, span.end)):
         span = Span(span.source, span.end - len(name), span.end)
@@ -243,20 +248,20 @@ def _argument_fault(
 def _only_call(text: PythonText, body: re.Match[str], start: re.Pattern[str]) -> ast.Call | None:
     """The only call of a class in the block `body`, also behind an expression of Jinja that prints
     nothing: `{{ '' }}Measure(...)`."""
-    starts = {each.end() - 1 for each in start.finditer(text.source.text, *body.span(1))}
-    found = [each for each in walk_code(text.tree)
-             if isinstance(each, ast.Call) and isinstance(each.func, ast.Name)
-             and text.span(each.func).end in starts]  # fmt: skip
+    starts = {match_.end() - 1 for match_ in start.finditer(text.source.text, *body.span(1))}
+    found = [call for call in walk_code(text.tree)
+             if isinstance(call, ast.Call) and isinstance(call.func, ast.Name)
+             and text.span(call.func).end in starts]  # fmt: skip
     return found[0] if len(found) == 1 else None
 
 
 def _is_counted(text: PythonText, call: ast.Call, known: set[str]) -> bool:
     """Whether each argument of a call is one argument in the program, whatever Jinja prints."""
-    if any(isinstance(each, ast.Starred) for each in call.args):
+    if any(isinstance(argument, ast.Starred) for argument in call.args):
         return False
     whole = text.span(call)
-    for each in text.fillings(Span(whole.source, text.span(call.func).end, whole.end)):
-        word = each.removeprefix("{{").removesuffix("}}").strip()
-        if not each.startswith("{{") or word not in known:
+    for filling in text.fillings(Span(whole.source, text.span(call.func).end, whole.end)):
+        word = filling.removeprefix("{{").removesuffix("}}").strip()
+        if not filling.startswith("{{") or word not in known:
             return False
     return True

@@ -27,8 +27,8 @@ def parts_of_arguments(own: OwnClass, execute: ast.FunctionDef) -> Iterator[Part
     of the key as an argument: `self._log(userdata.parcel)`."""
     userdata = execute.args.args[1].arg
     every = [*walk_code(execute)]
-    calls = [each for each in every if isinstance(each, ast.Call)]
-    if not calls or any(isinstance(each, ast.Name) and each.id in TESTS for each in every):
+    calls = [call for call in every if isinstance(call, ast.Call)]
+    if not calls or any(isinstance(node, ast.Name) and node.id in TESTS for node in every):
         return
     tried, written, known = tried_code(every), written_keys(every, userdata), _fields_known(every)
     done = set[tuple[str, int, str]]()
@@ -53,21 +53,21 @@ def parts_of_arguments(own: OwnClass, execute: ast.FunctionDef) -> Iterator[Part
             done.add((name, at, key))
             if not _is_rebound(found[1], given):
                 read = _parts(found[0].text, found[1], "", {given: (key, ())})
-                yield from (each for each in read if each.steps[-1] not in known)
+                yield from (part for part in read if part.steps[-1] not in known)
 
 
 def _is_rebound(function: ast.FunctionDef, name: str) -> bool:
     """Whether a function binds the name of a parameter again."""
-    binds = [each for each in walk_code(function)
-             if (isinstance(each, ast.Name) and each.id == name and not _is_read(each))
-             or (isinstance(each, ast.arg) and each.arg == name)]  # fmt: skip
+    binds = [node for node in walk_code(function)
+             if (isinstance(node, ast.Name) and node.id == name and not _is_read(node))
+             or (isinstance(node, ast.arg) and node.arg == name)]  # fmt: skip
     return len(binds) > 1
 
 
 def tried_code(every: Sequence[ast.AST]) -> set[ast.AST]:
     """The code in the body of a `try`."""
-    return {inner for each in every if isinstance(each, ast.Try)
-            for line in each.body for inner in walk_code(line)}  # fmt: skip
+    return {inner for node in every if isinstance(node, ast.Try)
+            for line in node.body for inner in walk_code(line)}  # fmt: skip
 
 
 def _parts(
@@ -77,26 +77,26 @@ def _parts(
     which are values of keys."""
     every = [*walk_code(function)]
     tried = tried_code(every)
-    if any(isinstance(each, ast.Name) and each.id in TESTS for each in every):
+    if any(isinstance(node, ast.Name) and node.id in TESTS for node in every):
         return ()
     written = written_keys(every, userdata)
     known = _fields_known(every)
     names = _names(every, userdata, given)
     found: list[Part] = []
-    for each in every:
-        found += [one for one in _unpacked(text, each, names, userdata)
-                  if each not in tried and one.key not in written]  # fmt: skip
-        way = _way(each, names, userdata)
-        if way is None or each in tried or not isinstance(each, ast.Attribute | ast.Subscript):
+    for node in every:
+        found += [one for one in _unpacked(text, node, names, userdata)
+                  if node not in tried and one.key not in written]  # fmt: skip
+        way = _way(node, names, userdata)
+        if way is None or node in tried or not isinstance(node, ast.Attribute | ast.Subscript):
             continue  # a local name has its value from a part that was read before
         key, steps = way
         if not steps or steps[-1] in known or key in written:
             continue
-        span = text.span(each)
+        span = text.span(node)
         if not text.is_filled(span):
             place = span
-            if isinstance(each, ast.Subscript) and isinstance(steps[-1][1], str):
-                place = text.span(each.slice)
+            if isinstance(node, ast.Subscript) and isinstance(steps[-1][1], str):
+                place = text.span(node.slice)
             found.append(Part(key, steps, span.text, place))
     return tuple(found)
 
@@ -110,7 +110,7 @@ def _unpacked(
         if way is None or not isinstance(target, ast.Tuple | ast.List):
             continue
         span = text.span(target)
-        if any(isinstance(each, ast.Starred) for each in target.elts) or text.is_filled(span):
+        if any(isinstance(elt, ast.Starred) for elt in target.elts) or text.is_filled(span):
             continue
         steps: tuple[Step, ...] = (*way[1], *more, ("names", len(target.elts)))
         yield Part(way[0], steps, text.span(value).text, span)
@@ -119,8 +119,8 @@ def _unpacked(
 def written_keys(every: Sequence[ast.AST], userdata: str) -> frozenset[str]:
     """The keys of userdata that the code writes or deletes."""
     found: set[str] = set()
-    for each in every:
-        match each:
+    for node in every:
+        match node:
             case ast.Attribute(value=ast.Name(id=name), attr=key, ctx=ast.Store() | ast.Del()):
                 found.update([key] if name == userdata else ())
             case ast.Subscript(
@@ -146,11 +146,11 @@ def added_entries(own: OwnClass, execute: ast.FunctionDef) -> frozenset[str] | N
     """The entries that the code of a class can add to the values of keys; None if their names are
     not known, or if it passes a whole value to other code."""
     userdata = execute.args.args[1].arg
-    every = [each for _, node in own.classes for each in walk_code(node)]
+    every = [inner for _, node in own.classes for inner in walk_code(node)]
     names = _names([*walk_code(execute)], userdata, {})
     found: set[str] = set()
-    for each in every:
-        match each:
+    for node in every:
+        match node:
             case ast.Subscript(slice=index, ctx=ast.Store()):
                 if not isinstance(index, ast.Constant):
                     return None
@@ -176,8 +176,8 @@ Way = tuple[str, tuple[Step, ...]]
 def _fields_known(every: Sequence[ast.AST]) -> frozenset[Step]:
     """The fields that the code sets, or for which it tests a mapping."""
     found: set[Step] = set()
-    for each in every:
-        match each:
+    for node in every:
+        match node:
             case ast.Subscript(slice=ast.Constant(value=str(name)), ctx=ast.Store() | ast.Del()):
                 found.add(("item", name))
             case ast.Compare(left=ast.Constant(value=str(name)), ops=[ast.In() | ast.NotIn()]):
@@ -187,12 +187,12 @@ def _fields_known(every: Sequence[ast.AST]) -> frozenset[Step]:
 
 def _names(every: Sequence[ast.AST], userdata: str, given: Mapping[str, Way]) -> Mapping[str, Way]:
     """The local names that are bound once, to a part of userdata or to each item of one."""
-    bound = Counter(each.id for each in every if isinstance(each, ast.Name) and not _is_read(each))
-    bound.update(each.arg for each in every if isinstance(each, ast.arg))
+    bound = Counter(name.id for name in every if isinstance(name, ast.Name) and not _is_read(name))
+    bound.update(argument.arg for argument in every if isinstance(argument, ast.arg))
     names: dict[str, Way] = {**given}
     # An outer loop comes before an inner one, and `ast.walk` gives it first.
-    for each in every:
-        for target, value, more in _bindings(each):
+    for node in every:
+        for target, value, more in _bindings(node):
             way = _way(value, names, userdata)
             if isinstance(target, ast.Name) and bound[target.id] == 1 and way is not None:
                 names[target.id] = (way[0], (*way[1], *more))

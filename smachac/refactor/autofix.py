@@ -97,9 +97,9 @@ def fixable(batch: Batch, report: Report) -> Report:
     """
     unclear = {
         identity(item)
-        for each in batch.reports.values()
-        if any(item.code in UNCLEAR for item in each)
-        for item in each
+        for report in batch.reports.values()
+        if any(item.code in UNCLEAR for item in report)
+        for item in report
     }
     rest = [item for item in report if item.finding.edits and identity(item) not in unclear]
     return _compatible(rest)

@@ -97,7 +97,10 @@ def _optional(machine: Machine, node: Node) -> frozenset[str]:
 
 def _with_optional(before: Node, after: Node, name: str) -> tuple[Outcome, ...]:
     """The outcomes after a change, if they are those before with or without an optional one."""
-    rest = [tuple(each for each in node.outcomes if each.name != name) for node in (before, after)]
+    rest = [
+        tuple(outcome for outcome in node.outcomes if outcome.name != name)
+        for node in (before, after)
+    ]
     return after.outcomes if rest[0] == rest[1] else before.outcomes
 
 
@@ -130,7 +133,12 @@ def remove_state(script: EditedScript, state: str, to: str | None = None) -> Ana
     place = editor.state(node.span)
     own = Span(node.span.source, place.item.start, editor.end_of(place))
     if isinstance(parent, Concurrence):
-        ruled = [each for rule in parent.rules for each in rule.when if each.child == node.name]
+        ruled = [
+            condition
+            for rule in parent.rules
+            for condition in rule.when
+            if condition.child == node.name
+        ]
         if ruled:
             message = f"a rule of `{parent.name}` names `{node.name}`"
             raise RefusedError(ruled[0].span, message, "change the rule first")
@@ -224,7 +232,7 @@ def _kept(presets: Iterable[Preset], own: Span) -> Iterable[Preset]:
         return span.source is own.source and own.start <= span.start < own.end
 
     for preset in presets:
-        given = [each for each in preset.given if not lost(each.span)]
+        given = [given for given in preset.given if not lost(given.span)]
         if given:
             yield replace(preset, value=given[-1].value)
         elif not lost(preset.span):
@@ -281,7 +289,7 @@ def add_state(
         set_entry(editor, before.span, "transitions", on, name)
     led = _transitions(parent, name, type_, given)
     item = _state_item(name, type_, variables or {}, led)
-    if any(each.leading[:1] == [""] for each in place.states.items):
+    if any(item.leading[:1] == [""] for item in place.states.items):
         item.leading = [""]
     lines = item_lines(item, place.states.column, first=False)
     editor.insert_lines(editor.end_of(place), lines)
@@ -290,9 +298,9 @@ def add_state(
 
     def same(whole: Machine) -> bool:
         nodes = dict(walk(whole.root))
-        made = [nodes.get(f"{each}/{name}") for each in places]
+        made = [nodes.get(f"{place}/{name}") for place in places]
         wanted = machine if on is None else _at(machine, befores, partial(_led, on, name))
-        return all(_is_made(each, type_name, led) for each in made) and same_machine(
+        return all(_is_made(state, type_name, led) for state in made) and same_machine(
             wanted, _at(whole, places, lambda node: _without_child(node, name))
         )
 
@@ -332,17 +340,17 @@ def _transitions(
             message = f"`{target}` is neither a state nor an outcome of `{parent.name}`"
             raise _unknown(message, target, known)
     found = dict(given)
-    for each in _outcomes(type_):
-        if each not in found and each not in ends and ends:
+    for outcome in _outcomes(type_):
+        if outcome not in found and outcome not in ends and ends:
             bad = [end for end in ends if is_failure(end)]
-            fails = is_failure(each) or each == PREEMPTED
-            found[each] = bad[0] if bad and fails else ends[0]
+            fails = is_failure(outcome) or outcome == PREEMPTED
+            found[outcome] = bad[0] if bad and fails else ends[0]
     return found
 
 
 def _outcomes(type_: StateType) -> Sequence[str]:
     """The outcomes of a new state. A script lists those that the type leaves to it."""
-    names = [each.name for each in type_.outcomes if each.name not in type_.optional]
+    names = [outcome.name for outcome in type_.outcomes if outcome.name not in type_.optional]
     return names or ["succeeded"]
 
 
@@ -351,14 +359,14 @@ def _state_item(
 ) -> Item:
     """The syntax tree of a new state."""
     values = {
-        each.name: _placeholder(each.type)
-        for each in type_.variables.values()
-        if each.required and each.default is None
+        variable.name: _placeholder(variable.type)
+        for variable in type_.variables.values()
+        if variable.required and variable.default is None
     } | dict(variables)
     rows: list[tuple[str, str | Collection]] = [("template", as_yaml(type_.name))]
     if "outcomes" in type_.given and not type_.outcomes:
         rows.append(("outcomes", f"[{', '.join(map(as_yaml, _outcomes(type_)))}]"))
-    rows += [(each, _yaml_value(value)) for each, value in values.items()]
+    rows += [(name, _yaml_value(value)) for name, value in values.items()]
     if led:
         pairs = ((as_yaml(outcome), as_yaml(target)) for outcome, target in led.items())
         rows.append(("transitions", flow_mapping(pairs)))
@@ -415,9 +423,9 @@ def _same_places(machine: Machine, path: str) -> frozenset[str]:
     they are those of the outermost containers."""
     nodes = dict(walk(machine.root))
     span = nodes[path].span
-    found = [each for each, node in nodes.items() if node.span == span]
+    found = [name for name, node in nodes.items() if node.span == span]
     return frozenset(
-        each for each in found if "/" not in each or nodes[each.rpartition("/")[0]].span != span
+        text for text in found if "/" not in text or nodes[text.rpartition("/")[0]].span != span
     )
 
 

@@ -73,7 +73,7 @@ def preset_keys(editor: ScriptEditor, inside: Sequence[Node]) -> set[str]:
         if body is None or item is None or variable(body, "states") is not None:
             continue
         if isinstance(item.value, Collection):
-            found |= {each.key.text.strip("'\"") for each in item.value.items if each.key}
+            found |= {other.key.text.strip("'\"") for other in item.value.items if other.key}
     return found
 
 
@@ -111,7 +111,7 @@ def plan_container(
         parent=parent,
         inside=inside,
         entry=entry,
-        exits=dict(sorted(exits.items(), key=lambda each: each[0] not in GOOD_OUTCOMES)),
+        exits=dict(sorted(exits.items(), key=lambda pair: pair[0] not in GOOD_OUTCOMES)),
         ends=ends,
         inputs=inputs,
         outputs=outputs,
@@ -183,7 +183,7 @@ def _exits(
         if not (place[1] and place[0] in mine):
             by_exit.setdefault(place, []).append(step)
     ends: dict[TargetName, str] = {}
-    for place in sorted(by_exit, key=lambda each: each[1]):
+    for place in sorted(by_exit, key=lambda pair: pair[1]):
         usual = Counter(outcome for _, outcome in by_exit[place]).most_common()
         ends[place] = _unique_name(
             [place[0]] if not place[1] else [word for word, _ in usual], taken
@@ -291,12 +291,12 @@ def _rules(
 
     The default is the target of most paths, the path through all states not counted.
     """
-    whole = max(paths, key=lambda each: (len(each[0]), _goodness(each)))
+    whole = max(paths, key=lambda path: (len(path[0]), _goodness(path)))
     others = Counter(place for _, place in paths if place != whole[1])
     default = others.most_common(1)[0][0] if others else whole[1]
     exits: dict[str, TargetName] = {}
     rules: dict[str, dict[str, str]] = {}
-    for steps, place in sorted(paths, key=lambda each: each is not whole):
+    for steps, place in sorted(paths, key=lambda path: path is not whole):
         if place == default:
             continue
         end = _unique_name([place[0]] if not place[1] else [steps[-1][1]], taken)
@@ -347,7 +347,7 @@ def _retarget_transitions(
     assert body is not None
     item = variable(body, "transitions")
     group = item.value if item is not None and isinstance(item.value, Collection) else None
-    own = {each.key.text.strip("'\""): each for each in group.items if each.key} if group else {}
+    own = {item.key.text.strip("'\""): item for item in group.items if item.key} if group else {}
     for step in child.transitions:
         target = plan.ends.get((child.name, step.outcome), step.target)
         here = own.get(step.outcome)
@@ -369,11 +369,11 @@ def _remove_transitions(item: Item) -> None:
     found = variable(body, "transitions") if body is not None else None
     if body is None or found is None:
         return
-    body.items = [each for each in body.items if each is not found]
+    body.items = [item for item in body.items if item is not found]
     item.leading += [*found.leading, found.trailing.strip()] if found.trailing else found.leading
     if isinstance(found.value, Collection):
-        for each in found.value.items:
-            item.leading += [line for line in (*each.leading, each.trailing.strip()) if line]
+        for other in found.value.items:
+            item.leading += [line for line in (*other.leading, other.trailing.strip()) if line]
         item.leading += found.value.tail
 
 

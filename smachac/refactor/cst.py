@@ -302,8 +302,8 @@ class _CstBuilder:
             if group is not None and comment is not None:
                 group.tail += [*_blanks(blanks), words]
                 begin = 0
-                for each in closed[closed.index(group) :]:
-                    each.end = ends[number] - 1
+                for collection in closed[closed.index(group) :]:
+                    collection.end = ends[number] - 1
             else:
                 (target if words else blanks).append(words)
                 begin = begin or ends[number] - len(line) - 1

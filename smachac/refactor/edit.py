@@ -80,7 +80,7 @@ def edit_of(data: object) -> Edit:
     if not isinstance(data, dict):
         raise BadEditError("an edit is an object")
     words = data.get("operation")
-    operation: Operation | None = next((each for each in FIELDS if each == words), None)
+    operation: Operation | None = next((field for field in FIELDS if field == words), None)
     path, given = data.get("path", ""), data.get("arguments", {})
     if operation is None:
         raise BadEditError(f"`operation` must be one of {', '.join(FIELDS)}")
@@ -94,7 +94,7 @@ def edit_of(data: object) -> Edit:
         if not isinstance(given.get(name), types):
             raise BadEditError(f"the argument `{name}` of `{operation}` is missing or wrong")
     texts = [*given.get("states", ()), *(given.get("transitions") or {}).values()]
-    if not all(isinstance(each, str) for each in texts):
+    if not all(isinstance(text, str) for text in texts):
         raise BadEditError("names must be texts")
     return Edit(operation=operation, path=path, arguments=given)
 

@@ -145,7 +145,7 @@ class ScriptEditor:
             (begin, end, self._printed(place, items))
             for begin, end, place, items in _outermost(stretches)
         ]
-        for begin, end, new in sorted(todo, key=lambda each: (each[0], -each[1])):
+        for begin, end, new in sorted(todo, key=lambda row: (row[0], -row[1])):
             if begin >= at:  # what stands in a stretch is in its print
                 parts += [text[at:begin], new]
                 at = end
@@ -205,10 +205,10 @@ def _outermost(
 ) -> Iterable[tuple[int, int, StateItem, list[Item]]]:
     """The ranges that are not inside another one."""
     inside = 0
-    for each in sorted(stretches, key=lambda each: (each[0], -each[1])):
-        if each[0] >= inside:
-            inside = each[1]
-            yield each
+    for stretch in sorted(stretches, key=lambda row: (row[0], -row[1])):
+        if stretch[0] >= inside:
+            inside = stretch[1]
+            yield stretch
 
 
 def _lists(body: Collection) -> list[Collection]:

@@ -146,11 +146,18 @@ def _container(
             found.structure.append(_position(node.initial, names))
         case nodes.Concurrence():
             rules = [
-                (_position(rule.outcome, own), [(_position(each.child, names),
-                                           _position(each.outcome, theirs.get(each.child, {})))
-                                          for each in rule.when])
+                (
+                    _position(rule.outcome, own),
+                    [
+                        (
+                            _position(condition.child, names),
+                            _position(condition.outcome, theirs.get(condition.child, {})),
+                        )
+                        for condition in rule.when
+                    ],
+                )
                 for rule in node.rules
-            ]  # fmt: skip
+            ]
             found.structure.append((_position(node.default_outcome, own), rules, node.join))
         case nodes.Iterator():
             ends = theirs[node.children[0].name] if names else {}

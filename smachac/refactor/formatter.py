@@ -296,8 +296,8 @@ def _paired(left: Map, right: Map, role: str) -> list[tuple[Tree, Tree, str]] | 
     state = role == "state" or (role == "root" and _is_script(left))
     if role == "item":
         left, right = _nested(left), _nested(right)
-    keys = [[_key(entry.key, state) for entry in each.entries] for each in (left, right)]
-    orders = [list(range(len(each))) for each in keys]
+    keys = [[_key(entry.key, state) for entry in map_.entries] for map_ in (left, right)]
+    orders = [list(range(len(key))) for key in keys]
     if state:
         orders = [sorted(order, key=lambda at, own=own: (*own[at], at))  # type: ignore[misc]
                   for order, own in zip(orders, keys, strict=True)]  # fmt: skip

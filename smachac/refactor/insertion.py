@@ -136,7 +136,7 @@ def _mapping(item: Item, span: Span) -> Collection:
 
 def _entry(group: Collection, key: str) -> Item | None:
     names = {key, as_yaml(key), f"'{key}'", f'"{key}"'}
-    return next((each for each in group.items if each.key and each.key.text in names), None)
+    return next((item for item in group.items if item.key and item.key.text in names), None)
 
 
 def _column(editor: ScriptEditor, item: Item) -> int:

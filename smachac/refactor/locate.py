@@ -24,20 +24,20 @@ def find_state(machine: Machine, name: str) -> tuple[str, Node]:
     found: dict[str, ScriptPath] = {}
     exact: dict[str, ScriptPath] = {}
     outermost: dict[str, ScriptPath] = {}
-    for each in walk_script(machine.root):
-        outer = outermost.setdefault(each.plain, each)
-        if any(_ends(path, name) for path in (each.plain, each.shown, each.full)):
-            found.setdefault(each.plain, outer)
-            exact |= {each.plain: outer} if name in (each.plain, each.shown, each.full) else {}
+    for path in walk_script(machine.root):
+        outer = outermost.setdefault(path.plain, path)
+        if any(_ends(path, name) for path in (path.plain, path.shown, path.full)):
+            found.setdefault(path.plain, outer)
+            exact |= {path.plain: outer} if name in (path.plain, path.shown, path.full) else {}
     if not found:
         paths = [path for path, _ in walk(machine.root)]
         names = dict.fromkeys(path.rpartition("/")[2] for path in paths)
         near = did_you_mean(name.rpartition("/")[2], names) or ""
         raise NotFoundError(f"there is no state `{name}`\n{near}".rstrip())
-    written = [each for each in found.values() if not each.added] or list(found.values())
+    written = [path for path in found.values() if not path.added] or list(found.values())
     if len(exact.values() or written) > 1:
         lines = [f"there are {len(written)} states `{name}`; name one by its path:"]
-        raise NotFoundError("\n".join([*lines, *(f"  {each.plain}" for each in written[:20])]))
+        raise NotFoundError("\n".join([*lines, *(f"  {path.plain}" for path in written[:20])]))
     (one,) = exact.values() or written
     if one.added:
         raise _added_error(one)
@@ -71,11 +71,11 @@ def find_named(machine: Machine, path: str, kind: str | None) -> tuple[str, Span
 
     added: ScriptPath | None = None
     fixed: RefusedError | None = None
-    for each in walk_script(machine.root):
-        here, node = each.plain, each.node
+    for other in walk_script(machine.root):
+        here, node = other.plain, other.node
         known.setdefault(node.name)
-        if each.added:
-            added = each if _ends(here, path) else added
+        if other.added:
+            added = other if _ends(here, path) else added
             continue
         if _ends(here, path):
             note("state", here, node.span)
@@ -95,7 +95,7 @@ def find_named(machine: Machine, path: str, kind: str | None) -> tuple[str, Span
         known.update(dict.fromkeys(sorted(keys)))
         if name in keys:
             note("key", f"{here}/{name}", node.children[0].span)
-    meant = [each for each in found.values() if kind in (None, each[0])]
+    meant = [row for row in found.values() if kind in (None, row[0])]
     if not meant and fixed is not None:
         raise fixed
     if not meant and added is not None:
@@ -142,7 +142,7 @@ def different_container_error(
     machine: Machine, above: str, name: str, known: Iterable[str]
 ) -> NotFoundError:
     """The error for a state that is not in the container at `above`."""
-    other = next((each.plain for each in walk_script(machine.root) if each.node.name == name), None)
+    other = next((path.plain for path in walk_script(machine.root) if path.node.name == name), None)
     if other is not None:
         words = f"`{name}` is in `{other.rpartition('/')[0]}`, the first state in `{above}`"
         return NotFoundError(f"{words}\nall states must be in the same container")

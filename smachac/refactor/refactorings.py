@@ -94,11 +94,11 @@ def contain_states(script: EditedScript, name: str, type_: str, states: Sequence
         facts = partial(_facts, before.state_types, script.library())
         parent = with_inferred_interfaces(parent, facts)
     known = {child.name: child for child in parent.children}
-    names = [_name_in(before, above, each, known) for each in states]
-    for each in names:
-        if each not in known:
+    names = [_name_in(before, above, state, known) for state in states]
+    for text in names:
+        if text not in known:
             around = plain_paths(before.root).get(above, above)
-            raise different_container_error(before, around, each, known)
+            raise different_container_error(before, around, text, known)
     inside = [child for child in parent.children if child.name in names]
     presets = preset_keys(script.editor(inside[0].span.source), inside)
     made = plan_container(parent, inside, presets, name, type_)
@@ -113,7 +113,7 @@ def _check_written(machine: Machine, kind: str, declared: Span, old: str) -> Non
     nodes = [node for _, node in walk(machine.root)]
     texts = {id(node.span.source) for node in nodes}
     mine = next((node for node in nodes
-                 if any(each.span == declared for each in node.outcomes)), None)  # fmt: skip
+                 if any(outcome.span == declared for outcome in node.outcomes)), None)  # fmt: skip
     if kind == "outcome" and mine is not None and id(declared.source) not in texts:
         message = f"`{old}` is an outcome of the state type `{mine.type}`, not of the script"
         help = f"rename it in the interface of `{mine.type}`, or put the state into a container"
@@ -152,8 +152,10 @@ def _no_worse(before: Analysis, after: Analysis, span: Span) -> None:
     """Raises RefusedError if the change adds a fault of the data flow."""
 
     def flaws(analysis: Analysis) -> Counter[str]:
-        grave = (each for each in analysis.report if each.severity is not Severity.INFO)
-        return Counter(each.code for each in grave if each.code.startswith("SM3"))
+        grave = (
+            diagnostic for diagnostic in analysis.report if diagnostic.severity is not Severity.INFO
+        )
+        return Counter(diagnostic.code for diagnostic in grave if diagnostic.code.startswith("SM3"))
 
     new = flaws(after) - flaws(before)
     found = next((item for item in after.report if item.code in new), None)

@@ -161,9 +161,9 @@ def rename_state(renaming: Renaming, machine: Machine, declared: Span) -> None:
         match container:
             case nodes.Concurrence():
                 for rule in container.rules:
-                    for each in rule.when:
-                        if each.child == renaming.old:
-                            renaming.replace_word(each.span)
+                    for condition in rule.when:
+                        if condition.child == renaming.old:
+                            renaming.replace_word(condition.span)
                     for word in rule.ignored:
                         if word.text == renaming.old:
                             renaming.replace_word(word.span)
@@ -193,10 +193,12 @@ def _rename_in_properties(
             words = names.paths[events[0][0]].split("/")
             path = ["/".join(words[: end + 1]) for end in range(len(words))]
             parts = name.split("/")
-            for at, each in enumerate(path[-len(parts) :]):
-                parts[at] = renaming.new if is_state(known[each]) else parts[at]
+            for at, text in enumerate(path[-len(parts) :]):
+                parts[at] = renaming.new if is_state(known[text]) else parts[at]
             name = "/".join(parts)
-        if outcome == renaming.old and any(has_outcome(names.nodes[each]) for each, _ in events):
+        if outcome == renaming.old and any(
+            has_outcome(names.nodes[number]) for number, _ in events
+        ):
             outcome = renaming.new
         new = str(replace(atom, name=name, outcome=outcome))
         if new != str(atom) and atom.span.text.strip("'\"") == str(atom):
@@ -210,8 +212,8 @@ def rename_outcome(renaming: Renaming, machine: Machine, declared: Span) -> None
     """Rename the outcome that is declared at a span, and the references to it."""
 
     def has_declaration(node: Node) -> bool:
-        return any(each.name == renaming.old and same_place(each.span, declared)
-                   for each in node.outcomes)  # fmt: skip
+        return any(outcome.name == renaming.old and same_place(outcome.span, declared)
+                   for outcome in node.outcomes)  # fmt: skip
 
     _rename_in_properties(renaming, machine, has_outcome=has_declaration)
     if has_declaration(machine.root):
@@ -220,7 +222,7 @@ def rename_outcome(renaming: Renaming, machine: Machine, declared: Span) -> None
         for child in container.children:
             if not has_declaration(child):
                 continue
-            if any(each.name == renaming.new for each in child.outcomes):
+            if any(outcome.name == renaming.new for outcome in child.outcomes):
                 message = f"`{child.name}` already has an outcome `{renaming.new}`"
                 raise RefusedError(child.span, message, "choose another name")
             _rename_in_state(renaming, child)
@@ -236,8 +238,10 @@ def _rename_in_state(renaming: Renaming, node: Node) -> None:
         for name in ("retry", "for_each"):
             item = variable(body, name)
             if item is not None and isinstance(item.value, Collection):
-                inner = [each for each in item.value.items if each.key and each.key.text == "on"]
-                for atom in (atom for each in inner for atom in _values(each)):
+                inner = [
+                    other for other in item.value.items if other.key and other.key.text == "on"
+                ]
+                for atom in (atom for item in inner for atom in _values(item)):
                     renaming.atom(editor, atom)
     if isinstance(node, Leaf):
         conditions = variable_of(node, "conditions")
@@ -285,10 +289,10 @@ def _rename_in_container(renaming: Renaming, container: Container, child: Node) 
     match container:
         case nodes.Concurrence():
             for rule in container.rules:
-                for each in rule.when:
-                    if each.child == child.name and each.outcome == renaming.old:
-                        editor = renaming.editors(each.span.source)
-                        renaming.atom(editor, editor.value_of(each.span))
+                for condition in rule.when:
+                    if condition.child == child.name and condition.outcome == renaming.old:
+                        editor = renaming.editors(condition.span.source)
+                        renaming.atom(editor, editor.value_of(condition.span))
         case nodes.Iterator():
             bodies = renaming.bodies(container)
             renaming.words(bodies, "loop_outcomes", "break_outcomes")
@@ -303,13 +307,13 @@ def _step_words(
     for editor, body in bodies:
         item = variable(body, steps.name) if steps is not None else None
         for step in item.value.items if item and isinstance(item.value, Collection) else ():
-            for each in step.value.items if isinstance(step.value, Collection) else ():
-                if each.key is None or each.key.text != what:
+            for other in step.value.items if isinstance(step.value, Collection) else ():
+                if other.key is None or other.key.text != what:
                     continue
-                if isinstance(each.value, Atom):
-                    yield each.value, editor
+                if isinstance(other.value, Atom):
+                    yield other.value, editor
                 else:
-                    yield from ((inner.key, editor) for inner in each.value.items if inner.key)
+                    yield from ((inner.key, editor) for inner in other.value.items if inner.key)
 
 
 # --- keys
@@ -323,11 +327,11 @@ def rename_key(renaming: Renaming, machine: Machine, declared: Span) -> None:
     inside that use the same name for it."""
     starts = renaming.scopes or [declared]
     scopes = {
-        id(each): each
-        for each in containers_of(machine)
-        if not each.sugar
-        and each.children
-        and any(same_place(each.children[0].span, start) for start in starts)
+        id(container): container
+        for container in containers_of(machine)
+        if not container.sugar
+        and container.children
+        and any(same_place(container.children[0].span, start) for start in starts)
     }
     todo = list(scopes.values())
     while todo:
@@ -341,12 +345,14 @@ def rename_key(renaming: Renaming, machine: Machine, declared: Span) -> None:
             ):
                 place = child.children[0].span
                 same = [
-                    each
-                    for each in containers_of(machine)
-                    if not each.sugar and each.children and same_place(each.children[0].span, place)
+                    container
+                    for container in containers_of(machine)
+                    if not container.sugar
+                    and container.children
+                    and same_place(container.children[0].span, place)
                 ]
-                todo += [each for each in same if id(each) not in scopes]
-                scopes |= {id(each): each for each in same}
+                todo += [container for container in same if id(container) not in scopes]
+                scopes |= {id(container): container for container in same}
     for scope in scopes.values():
         renaming.scopes.append(scope.children[0].span)
         _rename_in_scope(renaming, scope, scopes)
@@ -427,9 +433,9 @@ def _rename_items(renaming: Renaming, node: Node) -> None:
         item = variable(body, "for_each")
         if item is None or not isinstance(item.value, Collection):
             continue
-        for each in item.value.items:
-            if each.key is not None and each.key.text == "in" and isinstance(each.value, Atom):
-                renaming.atom(editor, each.value)
+        for other in item.value.items:
+            if other.key is not None and other.key.text == "in" and isinstance(other.value, Atom):
+                renaming.atom(editor, other.value)
 
 
 def _rename_in_leaf(renaming: Renaming, leaf: Leaf) -> bool:

@@ -234,7 +234,7 @@ def _path_to(tree: Tree, start: int, end: int) -> Iterator[Tree | Entry]:
                 inside = [key, value]
             case _:
                 return
-        part = next((each for each in inside if _start(each) <= start and end <= _end(each)), None)
+        part = next((item for item in inside if _start(item) <= start and end <= _end(item)), None)
 
 
 def _start(part: Tree | Entry) -> int:
@@ -498,7 +498,7 @@ def _other_types(path: list[Tree | Entry], types: Mapping[str, str]) -> Iterator
     if state is None or entry is None:
         return
     word = entry.value.span.text
-    own = [str(each.key.value) for each in state.entries if each.key.value not in schema.LONG]
+    own = [str(entry.key.value) for entry in state.entries if entry.key.value not in schema.LONG]
     fields = [name for name in own if name not in schema.VARIABLES]
     fitting = [
         name
@@ -507,7 +507,7 @@ def _other_types(path: list[Tree | Entry], types: Mapping[str, str]) -> Iterator
         if all(re.search(rf"\b{re.escape(field)}\b", text) for field in fields)
     ]
     entries = [part for part in path if isinstance(part, Entry)][-1:]
-    is_own = any(each.value is state or each in state.entries for each in entries)
+    is_own = any(entry.value is state or entry in state.entries for entry in entries)
     is_whole = is_own and word in schema.CONTAINERS
     kinds = [name for name in schema.CONTAINERS if is_whole and name != word]
     for name in (*kinds, *(fitting if len(fitting) <= MOST_NEAR else ())):
@@ -567,7 +567,7 @@ def _moved_states(path: list[Tree | Entry], source: Source) -> Iterator[Candidat
     if not lists:
         return
     items, state = lists[-1]
-    at = next(number for number, each in enumerate(items.items) if each is state)
+    at = next(number for number, item in enumerate(items.items) if item is state)
     others: list[Tree] = [lists[-2][1]] if at + 1 == len(items.items) and len(lists) > 1 else []
     before = items.items[at - 1] if at > 0 else None
     fields = before.entries[0].value if isinstance(before, Map) and before.entries else None

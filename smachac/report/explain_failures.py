@@ -40,11 +40,13 @@ def render_failures(name: str, found: Sequence[Failure], form: str) -> str:
 
 def _text(name: str, found: Sequence[Failure]) -> str:
     parts = [f"{on_one_line(name)}: {_summary(found)}"]
-    for each in found:
-        head = f"{each.path} fails with {each.outcome} ({each.span})"
-        way = "".join(steps(each.way))
+    for failure in found:
+        head = f"{failure.path} fails with {failure.outcome} ({failure.span})"
+        way = "".join(steps(failure.way))
         parts.append(
-            "\n".join(on_one_line(line) for line in (head, f"  {way}", f"  {_consequence(each)}"))
+            "\n".join(
+                on_one_line(line) for line in (head, f"  {way}", f"  {_consequence(failure)}")
+            )
         )
     return "\n\n".join(parts) + "\n"
 
@@ -52,8 +54,8 @@ def _text(name: str, found: Sequence[Failure]) -> str:
 def _summary(found: Sequence[Failure]) -> str:
     if not found:
         return "no state can fail"
-    answers = Counter(each.answer for each in found)
-    count = len({(each.path, each.outcome) for each in found})
+    answers = Counter(failure.answer for failure in found)
+    count = len({(failure.path, failure.outcome) for failure in found})
     paths = f" on {len(found)} paths" if len(found) > count else ""
     counts = [f"{answers[key]} {words}" for key, words in _COUNTED.items() if key in answers]
     return f"{count} {'failure' if count == 1 else 'failures'}{paths}: {', '.join(counts)}"
@@ -94,24 +96,24 @@ def _caught_by(failure: Failure) -> str:
 
 
 def _rows(found: Iterable[Failure]) -> Iterator[tuple[str, ...]]:
-    for each in found:
-        ends = alternatives(each.ends) or "never"
-        way = "".join(steps(each.way))
-        yield each.path, each.outcome, str(each.span), way, _caught_by(each), ends
+    for failure in found:
+        ends = alternatives(failure.ends) or "never"
+        way = "".join(steps(failure.way))
+        yield failure.path, failure.outcome, str(failure.span), way, _caught_by(failure), ends
 
 
 def _json(found: Iterable[Failure]) -> str:
     rows = [
         {
-            "state": each.path,
-            "failure": each.outcome,
-            "at": at(each.span),
-            "way": list(each.way),
-            "answer": each.answer,
-            "next": each.next,
-            "ends": list(each.ends),
+            "state": failure.path,
+            "failure": failure.outcome,
+            "at": at(failure.span),
+            "way": list(failure.way),
+            "answer": failure.answer,
+            "next": failure.next,
+            "ends": list(failure.ends),
         }
-        for each in found
+        for failure in found
     ]
     return json_text({"failures": rows})
 

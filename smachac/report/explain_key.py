@@ -128,7 +128,7 @@ def explain_key(context: Context, path: str, key: str) -> KeyPart:
     view = context.written
     shown = None if outer is None else view.state(outer)
     inside = next(((shown, name) for name in beyond if shown and name), None)
-    preset = next((each for each in container.userdata if each.key == key), None)
+    preset = next((preset for preset in container.userdata if preset.key == key), None)
     found = scope.uses.of(key)
     read = [use for use in found if use.reads and use.path != path]
     followed = key_statuses(flow, path, key, [use.path for use in read[:MOST_READERS]])
@@ -183,8 +183,8 @@ def key_text(part: KeyPart) -> tuple[str, list[Paragraph]]:
         words["is"].append(f"a copy of `{name}` of {path}")
     if part.given:
         words["set"].append("by the caller of the machine")
-    for each in part.uses:
-        word, lines = _use_text(part, each)
+    for use in part.uses:
+        word, lines = _use_text(part, use)
         words[word] += lines
     if not (words["set"] or words["written"] or words["copied"] or words["is"]):
         words["set"].append("nowhere")
@@ -235,7 +235,7 @@ def key_json(explanation: KeyExplanation) -> list[dict[str, Any]]:
             "type": str(part.type),
             "copy_of": list(part.inside) if part.inside else None,
             "given": part.given,
-            "uses": [_use_json(each) for each in part.uses],
+            "uses": [_use_json(use) for use in part.uses],
         }
         for part in explanation
     ]

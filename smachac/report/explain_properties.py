@@ -23,17 +23,17 @@ class NoScenarioError(Exception):
 def render_properties(machine: Machine, found: Sequence[Judgement], form: str) -> str:
     """The properties of a machine; `form` is `text` or `json`."""
     if form == "json":
-        data = [_as_data(machine, each) for each in found]
+        data = [_as_data(machine, judgement) for judgement in found]
         return json.dumps({"properties": data}, indent=2, ensure_ascii=False) + "\n"
     lines: list[str] = []
-    size = max((len(each.verdict) for each in found), default=0)
-    for each in found:
-        words = in_words(each.property.form)
-        name = each.property.name
+    size = max((len(judgement.verdict) for judgement in found), default=0)
+    for judgement in found:
+        words = in_words(judgement.property.form)
+        name = judgement.property.name
         named = words if name == words else f"{name}: {words}"
-        lines.append(f"{each.verdict:<{size}}  {named}")
-        if each.counterexample is not None:
-            labels = tuple(step.label for step in witness(each.counterexample))
+        lines.append(f"{judgement.verdict:<{size}}  {named}")
+        if judgement.counterexample is not None:
+            labels = tuple(step.label for step in witness(judgement.counterexample))
             lines += way(f"{'':<{size}}  ", labels)
     if not found:
         lines.append(f"{machine.root.name} has no properties")
@@ -63,14 +63,16 @@ def _replay(machine: Machine, each: Judgement) -> Replay:
 def render_scenario(machine: Machine, found: Sequence[Judgement], name: str) -> str:
     """The counterexample of the property with a name, or with a number from 1, as a file for
     `smachac run --mock`. Raises NoScenarioError."""
-    failing = [each for each in found if each.counterexample is not None]
-    chosen = [each for each in failing if each.property.name == name]
+    failing = [judgement for judgement in found if judgement.counterexample is not None]
+    chosen = [judgement for judgement in failing if judgement.property.name == name]
     if not chosen and name.isdecimal() and 1 <= int(name) <= len(found):
-        chosen = [each for each in found[int(name) - 1 : int(name)] if each in failing]
+        chosen = [
+            judgement for judgement in found[int(name) - 1 : int(name)] if judgement in failing
+        ]
     if not chosen:
-        names = [each.property.name for each in failing]
+        names = [judgement.property.name for judgement in failing]
         near = did_you_mean(name, names)
-        known = ", ".join(f"`{each}`" for each in names)
+        known = ", ".join(f"`{name}`" for name in names)
         help = near or (f"these fail: {known}" if known else "all properties hold")
         raise NoScenarioError(f"no property `{name}` fails\n{help}")
     shown = _replay(machine, chosen[0])

@@ -93,7 +93,7 @@ def explain_state(context: Context, path: str, report: Report) -> StateExplanati
         Exit(
             outcome=name,
             arrivals=tuple(
-                _in_script(context, path, name, each) for each in routes.arrivals(whole, name)
+                _in_script(context, path, name, arrival) for arrival in routes.arrivals(whole, name)
             ),
             steps=tuple(step for step in outer.transitions if step.outcome == name),
             again=state.next_round(name),
@@ -159,13 +159,13 @@ def state_text(state: StateExplanation) -> tuple[str, list[Paragraph]]:
     return f"state {state.path}", [
         ("is", lines),
         ("holds", list(_held(node))),
-        ("reads", [_read(each) for each in state.reads]),
-        ("writes", [_written(node, each) for each in state.writes]),
+        ("reads", [_read(read) for read in state.reads]),
+        ("writes", [_written(node, write) for write in state.writes]),
         ("claims", list(state.claims)),
         ("entered", list(_entered(state))),
         (
             "left",
-            [_left(state, each) for each in state.exits] or ["never: it has no outcome"],
+            [_left(state, exit_) for exit_ in state.exits] or ["never: it has no outcome"],
         ),
         ("found", [_found(item) for item in state.report] or ["nothing"]),
     ]
@@ -189,8 +189,8 @@ def kind(node: Node) -> str:
 
 def _held(node: Node) -> Iterator[str]:
     if isinstance(node, Leaf):
-        for each in node.variables:
-            yield f"{each.name} = {print_data(each.value.data)}"
+        for variable in node.variables:
+            yield f"{variable.name} = {print_data(variable.value.data)}"
         return
     for preset in node.userdata:
         yield f"the key `{preset.key}` = {print_data(preset.value.data)}"
@@ -244,7 +244,7 @@ def _left(state: StateExplanation, leaving: Exit) -> str:
     places = [step.span for step in leaving.steps if step.origin == "written"]
     where = place(places[0]) if places else ""
     if leaving.arrivals:
-        arrivals = (_arrival(state.node, each) for each in leaving.arrivals)
+        arrivals = (_arrival(state.node, arrival) for arrival in leaving.arrivals)
         ways = " or ".join(dict.fromkeys([*again, *arrivals]))
         return f"on {leaving.outcome}: {ways}{where}"
     if again:
@@ -277,13 +277,13 @@ def state_json(state: StateExplanation) -> dict[str, Any]:
         "doc": state.written.outer.doc,
         "at": at(node.span),
         "called": [at(call) for call in node.via],
-        "reads": [_key_json(each) for each in state.reads],
-        "writes": [_key_json(each) for each in state.writes],
+        "reads": [_key_json(read) for read in state.reads],
+        "writes": [_key_json(write) for write in state.writes],
         "claims": list(state.claims),
         "entered": [{"after": name, "outcome": outcome} for name, outcome in state.entered],
         "way": list(state.way),
         "reachable": state.reachable,
-        "exits": [_exit_json(each) for each in state.exits],
+        "exits": [_exit_json(exit_) for exit_ in state.exits],
         "findings": [{"code": i.code, "message": i.finding.message} for i in state.report],
     }
 
@@ -304,7 +304,7 @@ def _exit_json(leaving: Exit) -> dict[str, Any]:
         "outcome": leaving.outcome,
         **({"next": leaving.again} if leaving.again else {}),
         "leads": [
-            {"through": [list(each) for each in arrival.through], "to": arrival.target}
+            {"through": [list(pair) for pair in arrival.through], "to": arrival.target}
             for arrival in arrivals
         ],
     }

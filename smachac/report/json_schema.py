@@ -204,7 +204,8 @@ def _references(fields: list[str]) -> Schema:
 
 def _required(owner: FieldOwner) -> list[Schema]:
     return [
-        {"anyOf": [{"required": [each]} for each in _spellings(name)]} for name in REQUIRED[owner]
+        {"anyOf": [{"required": [spelling]} for spelling in _spellings(name)]}
+        for name in REQUIRED[owner]
     ]
 
 
@@ -242,7 +243,7 @@ def interface_schema() -> Schema:
             },
         }
 
-    flag, text, number = ({"type": each} for each in ("boolean", "string", "number"))
+    flag, text, number = ({"type": name} for name in ("boolean", "string", "number"))
     common: Schema = {
         "type": TYPE,
         "doc": text,

@@ -57,22 +57,22 @@ def usable_types(library: Library) -> Iterator[tuple[StateType, bool]]:
 
 def list_text(known: Sequence[Known]) -> str:
     """All types, one on each line, by origin and kind."""
-    width = max((len(each.type.name) for each in known), default=0)
+    width = max((len(other.type.name) for other in known), default=0)
     lines: list[str] = []
     for title, some in _grouped(known):
         lines += ["", title] if lines else [title]
         lines += [
-            f"  {on_one_line(each.type.name):<{width}}  {_first(each.type.doc)}".rstrip()
-            for each in some
+            f"  {on_one_line(known.type.name):<{width}}  {_first(known.type.doc)}".rstrip()
+            for known in some
         ]
     return "\n".join([*lines, "", "smachac states NAME describes one of them."]) + "\n"
 
 
 def _grouped(known: Sequence[Known]) -> Iterable[tuple[str, list[Known]]]:
     kinds = {"state": "state types", "container": "containers", "base": "bases"}
-    for place in dict.fromkeys(each.place for each in known):
+    for place in dict.fromkeys(other.place for other in known):
         for kind, word in kinds.items():
-            some = [each for each in known if each.place == place and each.type.kind == kind]
+            some = [other for other in known if other.place == place and other.type.kind == kind]
             if some:
                 yield f"{word} ({on_one_line(place)})", some
 
@@ -119,13 +119,13 @@ def _cell(text: str) -> str:
 
 
 def _sections(type_: StateType) -> Iterable[tuple[str, list[tuple[str, str]]]]:
-    variables = [(_variable(each), each.doc) for each in type_.variables.values()]
+    variables = [(_variable(variable), variable.doc) for variable in type_.variables.values()]
     keys = {"input keys": type_.input_keys, "output keys": type_.output_keys}
     parts: dict[str, list[tuple[str, str]]] = {"variables": variables}
     for title, several in keys.items():
         parts[title] = [(_named(key.name, key.type), key.doc) for key in several]
-    parts["outcomes"] = [(each.name, each.doc or _comes_with(type_, each.name))
-                         for each in type_.outcomes]  # fmt: skip
+    parts["outcomes"] = [(outcome.name, outcome.doc or _comes_with(type_, outcome.name))
+                         for outcome in type_.outcomes]  # fmt: skip
     for title, rows in parts.items():
         if title.replace(" ", "_") in type_.given:
             rows = [*rows, ("...", "what the script lists")]
@@ -184,17 +184,17 @@ def type_json(known: Known) -> dict[str, Any]:
         "open": type_.open,
         "variables": [
             {
-                "name": each.name,
-                "type": str(each.type),
-                "required": each.required,
-                "default": _data(each),
-                "doc": each.doc,
+                "name": variable.name,
+                "type": str(variable.type),
+                "required": variable.required,
+                "default": _data(variable),
+                "doc": variable.doc,
             }
-            for each in type_.variables.values()
+            for variable in type_.variables.values()
         ],
         "input_keys": [_key(key.name, key.type, key.doc) for key in type_.input_keys],
         "output_keys": [_key(key.name, key.type, key.doc) for key in type_.output_keys],
-        "outcomes": [{"name": each.name, "doc": each.doc} for each in type_.outcomes],
+        "outcomes": [{"name": outcome.name, "doc": outcome.doc} for outcome in type_.outcomes],
         "writes": {outcome: list(keys) for outcome, keys in type_.writes},
         "given_by_script": sorted(type_.given),
         "claims": list(type_.claims),

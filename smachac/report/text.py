@@ -86,7 +86,7 @@ def with_cluster(item: Diagnostic, cluster: Cluster | None) -> Diagnostic:
     words = in_words(cluster.repair, item.span)
     own, repairs = item.help, item.finding.all_repairs
     # The help is about the first repair of the rule, if that is likely.
-    named = [each.edits for each in repairs[:1] if each.certainty is not Certainty.POSSIBLE]
+    named = [repair.edits for repair in repairs[:1] if repair.certainty is not Certainty.POSSIBLE]
     if own and (cluster.repair.edits in named or words in own):
         help = own
     elif own and not repairs:

@@ -94,7 +94,7 @@ _FAULT: Table = {
 def read(faults: Iterable[Fault | Mapping[str, Any]]) -> tuple[Fault, ...]:
     """Faults from values, or from mappings with the same keys. Raises DataError."""
     return tuple(
-        each if isinstance(each, Fault) else fault(each, (k,)) for k, each in enumerate(faults)
+        other if isinstance(other, Fault) else fault(other, (k,)) for k, other in enumerate(faults)
     )
 
 

@@ -135,8 +135,8 @@ class Fields:
         for name, value in self.data.items():
             inner = self._inner_keys(name)
             if isinstance(value, Mapping) and key in inner and key not in value:
-                unknown = [each for each in self.data if each not in self.table]
-                moved = [each for each in unknown if each in inner and each not in value]
+                unknown = [item for item in self.data if item not in self.table]
+                moved = [item for item in unknown if item in inner and item not in value]
                 them = "it" if len(moved) == 1 else "them"
                 return f"move {listed(moved)} into `{name}`: indent {them} as its other keys"
         return None
@@ -211,7 +211,7 @@ def guess(name: object, known: Iterable[str]) -> str:
 
 def listed(names: Iterable[str]) -> str:
     """Names for a sentence: "`a`, `b`"."""
-    return ", ".join(f"`{each}`" for each in names)
+    return ", ".join(f"`{name}`" for name in names)
 
 
 def about(field: Field) -> str:

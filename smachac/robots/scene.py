@@ -77,9 +77,9 @@ def _mass(data: Any, place: Place) -> float:
 @fields.shape(fields.row(3, {"type": "number", "minimum": 0, "maximum": 1}))
 def _colour(data: Any, place: Place) -> RGB:
     found = fields.vector(data, place)
-    for k, each in enumerate(found):
-        if not 0.0 <= each <= 1.0:
-            message = f"a part of a colour is from 0 to 1, not {each:g}"
+    for k, number in enumerate(found):
+        if not 0.0 <= number <= 1.0:
+            message = f"a part of a colour is from 0 to 1, not {number:g}"
             parts = ", ".join(f"{part / 255:.3g}" for part in found)
             small = all(part in range(256) for part in found)
             help = f"write `[{parts}]`" if small else "divide values from 0 to 255 by 255"
@@ -93,12 +93,12 @@ _SHIFT = {"type": "number", "minimum": 0, "maximum": fields.FARTHEST}
 @fields.shape(fields.row(3, {}) | {"items": [_SHIFT, _SHIFT, {"type": "number", "minimum": 0}]})
 def _spread(data: Any, place: Place) -> Vector:
     found = fields.vector(data, place)
-    for k, each in enumerate(found):
-        if each < 0.0:
-            message, help = f"a shift is not negative, as {each:g} is", f"write `{-each:g}`"
+    for k, number in enumerate(found):
+        if number < 0.0:
+            message, help = f"a shift is not negative, as {number:g} is", f"write `{-number:g}`"
             raise DataError(message, (*place, k), f"{help}: it holds for both directions")
-    for k, each in enumerate(found[:2]):
-        fields.near(each, (*place, k))
+    for k, number in enumerate(found[:2]):
+        fields.near(number, (*place, k))
     return found
 
 

@@ -60,7 +60,7 @@ def faults(value: object) -> list[Fault]:
         fault = f"`qos` has no preset `{value}`; its presets are {known}"
         return [] if value in PRESETS else [Fault(fault, known=tuple(PRESETS))]
     if isinstance(value, Mapping):
-        return [fault for key, each in value.items() for fault in _policy_faults(key, each)]
+        return [fault for key, item in value.items() for fault in _policy_faults(key, item)]
     return [fault._replace(key="") for fault in _policy_faults("depth", value)]
 
 

@@ -246,7 +246,7 @@ class Clock:
         with self._changed:
             self._starting.add(key)
             try:
-                while any(each < key for each in self._absent()):
+                while any(row < key for row in self._absent()):
                     self._wait()
             finally:
                 self._starting.discard(key)

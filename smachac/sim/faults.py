@@ -134,7 +134,7 @@ class FaultSchedule:
         if not self._pending:
             return
         paths = tuple(f"/{path}" for path in began)
-        found = [each for each in self._pending if _begins(each[1], paths)]
+        found = [pair for pair in self._pending if _begins(pair[1], paths)]
         for number, fault in found:
             if fault.each_time:
                 self._visits[number] += 1
@@ -155,8 +155,8 @@ class FaultSchedule:
         Each adds an Event. A fault whose target does not exist has no effect. Raises WorldCrash.
         """
         if self._pending or self._due:
-            now = [each for each in self._pending if _is_due(each[1], scene.time)]
-            self._pending = [each for each in self._pending if each not in now]
+            now = [pair for pair in self._pending if _is_due(pair[1], scene.time)]
+            self._pending = [pair for pair in self._pending if pair not in now]
             due, self._due = [*self._due, *(fault for _, fault in now)], []
             for fault in due:
                 _apply(scene, arms, fault)

@@ -55,7 +55,7 @@ class JointControl:
         self._pads = mounted.pads
         self._followers = mounted.followers
         self._carriers = mounted.carriers
-        self._finger_targets = tuple(each.opened for each in self.finger_joints)
+        self._finger_targets = tuple(joint.opened for joint in self.finger_joints)
 
     # Measurements
 
@@ -63,13 +63,13 @@ class JointControl:
     def joints(self) -> tuple[float, ...]:
         """Joint positions (rad or m); a continuous joint may have made several turns."""
         states = self.engine.getJointStates(self._body, self.indices)
-        return tuple(each[0] for each in states)
+        return tuple(state[0] for state in states)
 
     @property
     def velocities(self) -> tuple[float, ...]:
         """Joint velocities (rad/s or m/s)."""
         states = self.engine.getJointStates(self._body, self.indices)
-        return tuple(each[1] for each in states)
+        return tuple(state[1] for state in states)
 
     @property
     def carriers(self) -> dict[str, float]:
@@ -139,19 +139,22 @@ class JointControl:
         count = len(self.indices) + len(followers)
         self.engine.setJointMotorControlArray(
             self._body,
-            [*self.indices, *(each.joint for each in followers)],
+            [*self.indices, *(follower.joint for follower in followers)],
             self.engine.POSITION_CONTROL,
             targetPositions=[
                 *positions,
-                *(each.multiplier * positions[each.leader] + each.offset for each in followers),
+                *(
+                    follower.multiplier * positions[follower.leader] + follower.offset
+                    for follower in followers
+                ),
             ],
             targetVelocities=[
                 *velocities,
-                *(each.multiplier * velocities[each.leader] for each in followers),
+                *(follower.multiplier * velocities[follower.leader] for follower in followers),
             ],
             positionGains=[0.3] * count,
             velocityGains=[1.0] * count,
-            forces=[*self.efforts, *(each.effort for each in followers)],
+            forces=[*self.efforts, *(follower.effort for follower in followers)],
         )
         self._hold_stuck_joints()
 
@@ -195,9 +198,13 @@ class JointControl:
     def stick(self, indices: Sequence[int]) -> None:
         """Lock these joints, and those that follow them, for the rest of the run."""
         locked = [*indices]
-        locked += [each.joint for each in self._followers if self.indices[each.leader] in indices]
+        locked += [
+            follower.joint
+            for follower in self._followers
+            if self.indices[follower.leader] in indices
+        ]
         states = self.engine.getJointStates(self._body, locked)
-        self.stuck.update(zip(locked, (each[0] for each in states), strict=True))
+        self.stuck.update(zip(locked, (state[0] for state in states), strict=True))
         self._hold_stuck_joints()
 
     def _hold_stuck_joints(self) -> None:

@@ -25,7 +25,7 @@ class UnknownNameError(KeyError):
     """The world has no limb, body or frame of that name; the message lists the known names."""
 
     def __init__(self, kind: str, name: str, known: object) -> None:
-        names = ", ".join(f"`{each}`" for each in known) if isinstance(known, tuple) else known
+        names = ", ".join(f"`{item}`" for item in known) if isinstance(known, tuple) else known
         super().__init__(f"no {kind} `{name}`; known: {names or 'none'}")
 
     def __str__(self) -> str:

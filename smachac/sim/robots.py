@@ -161,13 +161,13 @@ def _in_folder(found: Description | Station, folder: Path) -> Description | Stat
 
 def _parts(station: Station, base: Pose) -> Iterable[RobotPart]:
     """The robots of a station; their bases are given in its frame."""
-    for each in station.parts:
-        found = _described(each.robot, ())
+    for other in station.parts:
+        found = _described(other.robot, ())
         if isinstance(found, Station):
-            raise DataError("a part has no parts of its own", each.place, NO_PARTS)
-        part = _part(found, each.name)
-        place = part.base if each.base is None else compose(base, each.base)
-        names = limb_names(each.name, [limb.name for limb in part.limbs])
+            raise DataError("a part has no parts of its own", other.place, NO_PARTS)
+        part = _part(found, other.name)
+        place = part.base if other.base is None else compose(base, other.base)
+        names = limb_names(other.name, [limb.name for limb in part.limbs])
         limbs = tuple(
             replace(limb, name=name) for limb, name in zip(part.limbs, names, strict=True)
         )

@@ -225,7 +225,7 @@ class Scene:
         """The pose of a body as a camera measures it: with `noise`. Raises UnknownNameError."""
         position, rotation = self.pose(name, frame)
         if self.noise > 0.0:
-            position = [each + self._measured.gauss(0.0, self.noise) for each in position]
+            position = [number + self._measured.gauss(0.0, self.noise) for number in position]
         return [position, rotation]
 
     def error(self, name: str, pose: Any, frame: str = "base") -> float:

@@ -223,7 +223,7 @@ def grip(
     if not arm.fingers:
         return Result("aborted", "the arm has no gripper")
     arm.slips = arm.slips and not opening
-    arm.squeeze([each.opened if opening else each.closed for each in arm.finger_joints])
+    arm.squeeze([joint.opened if opening else joint.closed for joint in arm.finger_joints])
     stroke = (arm.open_width - arm.closed_width) / 2
     still, before = 0, arm.opening
     for step in range(round(_SETTLING_TIME / TIME_STEP)):
@@ -262,9 +262,9 @@ def _grasp(arm: JointControl, bodies: Mapping[str, int], name: str | None) -> Re
     if arm.width - arm.closed_width < _EMPTY_WIDTH:
         return Result("aborted", f"the grasp is empty ({1000 * arm.width:.1f} mm)")
     forces = arm.contact_forces(bodies)
-    held = {each: force for each, force in forces.items() if force > _GRASP_FORCE}
+    held = {name: force for name, force in forces.items() if force > _GRASP_FORCE}
     if name is not None and name not in held:
         return Result("aborted", f"`{name}` is not between the fingers")
     if not held:
         return Result("aborted", f"the fingers press nothing ({1000 * arm.width:.1f} mm open)")
-    return Result("succeeded", value=name or max(held, key=lambda each: held[each]))
+    return Result("succeeded", value=name or max(held, key=lambda text: held[text]))

@@ -73,13 +73,13 @@ class _ActiveLeaves:
         """Record that the branch `key` is in the leaf `path`."""
         with self._lock:
             self._paths[key] = path
-            self._show(tuple(self._paths[each] for each in sorted(self._paths)), path)
+            self._show(tuple(self._paths[path] for path in sorted(self._paths)), path)
 
     def end(self, key: Key) -> None:
         """Remove the branch `key`, which has ended or forks, and all branches below it."""
         with self._lock:
-            for each in [each for each in self._paths if each[: len(key)] == key]:
-                del self._paths[each]
+            for row in [path for path in self._paths if path[: len(key)] == key]:
+                del self._paths[row]
 
 
 class _ConcurrenceBranches:
@@ -187,7 +187,7 @@ def together(clock: Clock, calls: Sequence[Callable[[], Any]]) -> list[Any]:
             clock.leave(key)
 
     with clock.fork(len(calls)) as keys:
-        threads = [threading.Thread(target=work, args=each) for each in enumerate(keys)]
+        threads = [threading.Thread(target=work, args=pair) for pair in enumerate(keys)]
         for thread in threads:
             thread.start()
         for thread in threads:
@@ -226,4 +226,4 @@ def _distinct(states: Any) -> list[Any]:
 
 
 def _is_concurrence(state: Any) -> bool:
-    return any(each.__name__ == "Concurrence" for each in type(state).__mro__)
+    return any(type_.__name__ == "Concurrence" for type_ in type(state).__mro__)

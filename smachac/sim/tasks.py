@@ -28,7 +28,7 @@ def scattered(
     position, rotation = transforms.as_pose(pose)
     others = {name: (world.pose(name)[0], least) for name, least in (apart or {}).items()}
     for _ in range(_TRIES):
-        dx, dy, yaw = (each * world.random.uniform(-1.0, 1.0) for each in spread)
+        dx, dy, yaw = (number * world.random.uniform(-1.0, 1.0) for number in spread)
         moved = (position[0] + dx, position[1] + dy, position[2])
         if all(math.dist(moved[:2], at[:2]) >= least for at, least in others.values()):
             turned = transforms.multiply(transforms.about_z(yaw), rotation)
@@ -51,7 +51,7 @@ def check_placed(world: Scene, body: str, pose: Any, tolerance: float) -> Result
         return Result("aborted", f"`{body}` still moves", error)
     (_, rotation) = transforms.as_pose(world.pose(body))
     up = transforms.rotate(rotation, (0.0, 0.0, 1.0))
-    tilt = math.acos(max(-1.0, min(1.0, max(abs(each) for each in up[2:]))))
+    tilt = math.acos(max(-1.0, min(1.0, max(abs(number) for number in up[2:]))))
     if tilt > _TILT:
         return Result("aborted", f"`{body}` is tilted by {math.degrees(tilt):.1f} deg", error)
     return Result("succeeded", value=error)

@@ -28,8 +28,8 @@ def as_pose(value: Any) -> Pose:
         value = [[p.x, p.y, p.z], [q.x, q.y, q.z, q.w]]
     try:
         position, rotation = value if len(value) == 2 else (value, IDENTITY[1])
-        place = [float(each) for each in position]
-        turn = [float(each) for each in rotation]
+        place = [float(item) for item in position]
+        turn = [float(value) for value in rotation]
     except (TypeError, ValueError):
         raise ValueError(f"not a pose [[x, y, z], [qx, qy, qz, qw]]: {value!r}") from None
     if len(place) != 3 or len(turn) != 4 or not all(map(math.isfinite, place + turn)):
@@ -43,7 +43,7 @@ def as_lists(pose: Pose) -> list[list[float]]:
 
 
 def _normalized(q: Sequence[float]) -> Quaternion:
-    norm = math.sqrt(sum(each * each for each in q))
+    norm = math.sqrt(sum(number * number for number in q))
     if norm == 0.0:
         return IDENTITY[1]
     return (q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm)

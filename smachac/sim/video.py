@@ -117,11 +117,13 @@ class Film:
 def fit(scene: Scene) -> Camera:
     """The nearest camera in the fixed direction that shows the robot and all bodies."""
     norm = math.hypot(*_VIEW)
-    back = tuple(each / norm for each in _VIEW)
+    back = tuple(number / norm for number in _VIEW)
     flat = math.hypot(back[0], back[1])
     right = (-back[1] / flat, back[0] / flat, 0.0)
     up = (-back[2] * right[1], back[2] * right[0], flat)
-    points = [(_dot(right, each), _dot(up, each), _dot(back, each)) for each in _corners(scene)]
+    points = [
+        (_dot(right, corner), _dot(up, corner), _dot(back, corner)) for corner in _corners(scene)
+    ]
     tall = math.tan(math.radians(_FIELD) / 2) * _FILLED
     wide = tall * _ASPECT
     across = rise = 0.0
@@ -136,7 +138,7 @@ def fit(scene: Scene) -> Camera:
         across += (min(lefts) + max(lefts)) / 2 * away * 0.8
         rise += (min(downs) + max(downs)) / 2 * away * 0.8
     target = [across * r + rise * u for r, u in zip(right, up, strict=True)]
-    eye = [each + away * b for each, b in zip(target, back, strict=True)]
+    eye = [number + away * b for number, b in zip(target, back, strict=True)]
     bullet = pybullet()
     return (
         bullet.computeViewMatrix(eye, target, (0, 0, 1)),
@@ -251,8 +253,8 @@ def _palette(image: Any) -> Any:
     paints = list(dict.fromkeys(paint for model in MODELS.values() for paint in model.colours))
     swatch = _pillow().new("RGB", (image.width, image.height + len(paints) * len(_LIT)))
     swatch.paste(image, (0, 0))
-    for row, (paint, lit) in enumerate((each, lit) for each in paints for lit in _LIT):
-        colour = tuple(min(255, round(255 * lit * each)) for each in paint)
+    for row, (paint, lit) in enumerate((paint, lit) for paint in paints for lit in _LIT):
+        colour = tuple(min(255, round(255 * lit * number)) for number in paint)
         swatch.paste(colour, (0, image.height + row, image.width, image.height + row + 1))
     return swatch.quantize(_COLOURS)
 

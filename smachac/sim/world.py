@@ -96,7 +96,7 @@ class World(Scene):
             patience=patience,
         )
         try:
-            self.arms = tuple(Arm(self, each) for each in self.limbs)
+            self.arms = tuple(Arm(self, limb) for limb in self.limbs)
             for arm in self.arms:
                 arm.reset(arm.limb.home)
             film = record or _settings.record
@@ -182,7 +182,7 @@ class World(Scene):
         Its Concurrences then run in lockstep with simulated time, and captions and faults follow
         its states. `name` is the path of the machine. A second call has no effect.
         """
-        if not any(root is each for each in self._attached):
+        if not any(root is item for item in self._attached):
             self._attached.append(root)
             smach_bridge.attach(root, self.clock, self.enter, name)
 

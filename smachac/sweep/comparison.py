@@ -38,7 +38,7 @@ def compare(before: Summary, after: Summary) -> list[Difference]:
     """The difference of the successes, then those of the failures, the largest first."""
     return [
         _difference("", before, before["success"]["count"], after, after["success"]["count"]),
-        *sorted(_failures(before, after), key=lambda each: -abs(each.difference)),
+        *sorted(_failures(before, after), key=lambda failure: -abs(failure.difference)),
     ]
 
 

@@ -163,8 +163,8 @@ class Database:
 
 def _row(run: Run) -> tuple[Any, ...]:
     states = {
-        path: [dict(each.outcomes), each.seconds, each.longest, each.unfinished]
-        for path, each in run.states.items()
+        path: [dict(state.outcomes), state.seconds, state.longest, state.unfinished]
+        for path, state in run.states.items()
     }
     return (
         run.seed,

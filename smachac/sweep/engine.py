@@ -130,5 +130,5 @@ def _deadline(limit: float | None) -> float | None:
 
 def _left(runs: Iterable[_Busy | None]) -> float | None:
     """The time until the first deadline (s)."""
-    deadlines = [each.deadline for each in runs if each is not None and each.deadline is not None]
+    deadlines = [run.deadline for run in runs if run is not None and run.deadline is not None]
     return max(0.0, min(deadlines) - time.monotonic()) if deadlines else None

@@ -95,7 +95,7 @@ class Failures:
             if outcome and not (self._view.is_whole(full) and is_step(state)):
                 continue
             field_ = state.field_of(outcome) if outcome else None
-            badge = next((each.text for each in state.badges if each.field == field_), "")
+            badge = next((badge.text for badge in state.badges if badge.field == field_), "")
             yield (full, outcome), Step(path, outcome, badge)
 
     def _places(self, ends: Sequence[tuple[graph.Event, Step]]) -> tuple[int, int]:

@@ -41,7 +41,7 @@ def input_digests(
         "program": _digest(repr(sorted(files.items()))),
         "scenario": _digest(repr(task.scenario)),
         "faults": _digest(repr(task.faults)),
-        "vary": _digest(repr(sorted(task.variations, key=lambda each: each.name))),
+        "vary": _digest(repr(sorted(task.variations, key=lambda variation: variation.name))),
         "smachac": __version__,
     }
     if task.max_steps != MAX_STEPS:

@@ -48,9 +48,9 @@ class LocalWorker:
 
 def wait(workers: Sequence[LocalWorker], timeout: float | None) -> list[LocalWorker]:
     """The workers that have a result or have ended."""
-    by_connection: dict[object, LocalWorker] = {each.connection: each for each in workers}
-    ready = connection.wait([each.connection for each in workers], timeout)
-    return [by_connection[each] for each in ready]
+    by_connection: dict[object, LocalWorker] = {worker.connection: worker for worker in workers}
+    ready = connection.wait([worker.connection for worker in workers], timeout)
+    return [by_connection[value] for value in ready]
 
 
 def _ending(code: int) -> str:

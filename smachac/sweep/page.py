@@ -129,12 +129,14 @@ def _row(label: str, part: float, shown: str, kind: str, interval: Sequence[floa
 def _outcomes(summary: Summary) -> str:
     good = summary["success"]["outcomes"]
     rows = []
-    for each in summary["outcomes"]:
-        name = "failed run" if each["outcome"] is None else each["outcome"]
-        kind = "good" if name in good else "bad" if good or each["outcome"] is None else "bar"
-        low, high = each["interval"]
-        shown = f"{percent(each['share'])} ({each['count']}), {percent(low)} to {percent(high)}"
-        rows.append(_row(name, each["share"], shown, kind, each["interval"]))
+    for outcome in summary["outcomes"]:
+        name = "failed run" if outcome["outcome"] is None else outcome["outcome"]
+        kind = "good" if name in good else "bad" if good or outcome["outcome"] is None else "bar"
+        low, high = outcome["interval"]
+        shown = (
+            f"{percent(outcome['share'])} ({outcome['count']}), {percent(low)} to {percent(high)}"
+        )
+        rows.append(_row(name, outcome["share"], shown, kind, outcome["interval"]))
     return f'{_bars(rows)}<p class="dim">share of the runs (count), with its 95 % interval</p>'
 
 
@@ -151,14 +153,14 @@ def _durations(summary: Summary) -> str:
     bins = times["histogram"]
     if len(bins) < 2:
         return ""
-    most = max(each["count"] for each in bins)
+    most = max(bin_["count"] for bin_ in bins)
     step = (WIDTH - LEFT) / len(bins)
     bars = "".join(
         f'<rect class="bar" x="{LEFT + step * k + 1:.1f}" width="{step - 2:.1f}"'
-        f' y="{TOP + HEIGHT * (1 - each["count"] / most):.1f}"'
-        f' height="{HEIGHT * each["count"] / most:.1f}">'
-        f"<title>{_text(_range(each))} s: {each['count']} runs</title></rect>"
-        for k, each in enumerate(bins)
+        f' y="{TOP + HEIGHT * (1 - bin_["count"] / most):.1f}"'
+        f' height="{HEIGHT * bin_["count"] / most:.1f}">'
+        f"<title>{_text(_range(bin_))} s: {bin_['count']} runs</title></rect>"
+        for k, bin_ in enumerate(bins)
     )
     low, high = bins[0]["low"], bins[-1]["high"]
     bottom = TOP + HEIGHT
@@ -205,24 +207,24 @@ def _varied(each: dict[str, Any]) -> str:
 
 def _states(summary: Summary) -> str:
     """The time of all runs by state, and a table."""
-    leaves = [each for each in summary["states"] if each["leaf"] and each["seconds"] > 0]
-    most = max((each["seconds"] for each in leaves), default=0.0)
-    total = sum(each["seconds"] for each in leaves)
+    leaves = [state for state in summary["states"] if state["leaf"] and state["seconds"] > 0]
+    most = max((leaf["seconds"] for leaf in leaves), default=0.0)
+    total = sum(leaf["seconds"] for leaf in leaves)
     plot = ""
     if most > 0:
-        ordered = sorted(leaves, key=lambda each: -float(each["seconds"]))[:MOST_BARS]
+        ordered = sorted(leaves, key=lambda leaf: -float(leaf["seconds"]))[:MOST_BARS]
         rows = [
-            _row(each["path"].partition("/")[2] or each["path"], each["seconds"] / total,
-                 f"{percent(each['seconds'] / total)}, mean {seconds(each['mean'])}", "bar")
-            for each in ordered
+            _row(item["path"].partition("/")[2] or item["path"], item["seconds"] / total,
+                 f"{percent(item['seconds'] / total)}, mean {seconds(item['mean'])}", "bar")
+            for item in ordered
         ]  # fmt: skip
         plot = f'{_bars(rows)}<p class="dim">share of the time of all runs</p>'
     body = "".join(
-        f"<tr><td>{_text(each['path'])}</td><td class=n>{each['visits']}</td>"
-        f"<td class=n>{_text(seconds(each['mean']))}</td>"
-        f"<td class=n>{_text(seconds(each['longest']))}</td>"
-        f"<td>{_text(_ends(each))}</td></tr>"
-        for each in summary["states"]
+        f"<tr><td>{_text(state['path'])}</td><td class=n>{state['visits']}</td>"
+        f"<td class=n>{_text(seconds(state['mean']))}</td>"
+        f"<td class=n>{_text(seconds(state['longest']))}</td>"
+        f"<td>{_text(_ends(state))}</td></tr>"
+        for state in summary["states"]
     )
     head = "<th>state</th><th class=n>visits</th><th class=n>mean</th><th class=n>longest</th>"
     table = f"<table><tr>{head}<th>outcomes</th></tr>{body}</table>"
@@ -243,14 +245,16 @@ def _differences(differences: Sequence[Difference]) -> str:
     if not differences:
         return ""
     rows = []
-    for each in differences:
-        better = (each.difference > 0) == (not each.what)
-        look = f' class="{"better" if better else "worse"}"' if each.is_clear else ""
+    for difference in differences:
+        better = (difference.difference > 0) == (not difference.what)
+        look = f' class="{"better" if better else "worse"}"' if difference.is_clear else ""
         rows.append(
-            f"<tr{look}><td>{_text(each.what or 'success')}</td>"
-            f"<td class=n>{percent(each.before)}</td><td class=n>{percent(each.after)}</td>"
-            f"<td class=n>{_text(points(each.difference))}</td>"
-            f"<td>{_text(points(each.interval[0]))} to {_text(points(each.interval[1]))}</td></tr>"
+            f"<tr{look}><td>{_text(difference.what or 'success')}</td>"
+            f"<td class=n>{percent(difference.before)}</td>"
+            f"<td class=n>{percent(difference.after)}</td>"
+            f"<td class=n>{_text(points(difference.difference))}</td>"
+            f"<td>{_text(points(difference.interval[0]))} to"
+            f" {_text(points(difference.interval[1]))}</td></tr>"
         )
     head = "<th class=n>before</th><th class=n>now</th><th class=n>difference (points)</th>"
     return (
@@ -304,9 +308,9 @@ def _coverage(summary: Summary, graph: str) -> str:
     states, transitions = summary["coverage"]["states"], summary["coverage"]["transitions"]
     missing = [f"not visited: {path}" for path in states["missing"]]
     missing += [
-        f"not taken: {each['path']}: {each['outcome']} \N{RIGHTWARDS ARROW} {each['to']}"
-        f" ({each['src']})"
-        for each in transitions["missing"]
+        f"not taken: {item['path']}: {item['outcome']} \N{RIGHTWARDS ARROW} {item['to']}"
+        f" ({item['src']})"
+        for item in transitions["missing"]
     ]
     words = (
         f"<p>{states['visited']} of {states['total']} states visited, {transitions['taken']} of"

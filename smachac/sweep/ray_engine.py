@@ -48,9 +48,9 @@ class RayWorker:
 def wait(workers: Sequence[RayWorker], timeout: float | None) -> list[RayWorker]:
     """The workers that have a result or have ended."""
     ray = _ray()
-    by_reference = {each.reference: each for each in workers}
+    by_reference = {worker.reference: worker for worker in workers}
     ready, _ = ray.wait(list(by_reference), timeout=timeout)
-    return [by_reference[each] for each in ready]
+    return [by_reference[item] for item in ready]
 
 
 def runs(

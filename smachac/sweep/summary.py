@@ -136,7 +136,7 @@ def _times(seconds: Sequence[float]) -> dict[str, Any]:
         "longest": ordered[-1],
         "histogram": [
             {"low": low, "high": high, "count": len(inside)}
-            for low, high, inside in _parts([(each, each) for each in ordered], 2 * PARTS)
+            for low, high, inside in _parts([(number, number) for number in ordered], 2 * PARTS)
         ],
     }
 
@@ -150,7 +150,7 @@ def _parts(values: Sequence[tuple[float, Any]], count: int) -> list[tuple[float,
         at = int((value - low) / (high - low) * count) if high > low else 0
         inside[min(at, count - 1)].append(what)
     ends = [low + (high - low) * number / count for number in range(count + 1)]
-    return [(ends[k], ends[k + 1], each) for k, each in enumerate(inside)]
+    return [(ends[k], ends[k + 1], row) for k, row in enumerate(inside)]
 
 
 def _coverage(machine: Machine, totals: Totals, view: Written) -> dict[str, Any]:
@@ -193,7 +193,7 @@ def _state(state: WrittenState, found: WrittenStatistics) -> dict[str, Any]:
         "mean": visits.mean,
         "longest": visits.longest,
         "seconds": visits.seconds,
-        "outcomes": dict(sorted(visits.outcomes.items(), key=lambda each: (-each[1], each[0]))),
+        "outcomes": dict(sorted(visits.outcomes.items(), key=lambda pair: (-pair[1], pair[0]))),
         "rounds": dict(found.rounds),
     }
 
@@ -236,7 +236,7 @@ def _varied(name: str, values: Sequence[tuple[Single, bool]]) -> dict[str, Any]:
         rows = [
             {"value": value, **_share(sum(goods), len(goods)), "runs": len(goods)}
             for value, goods in sorted(
-                by_value.items(), key=lambda each: (str(type(each[0])), each[0])
+                by_value.items(), key=lambda pair: (str(type(pair[0])), pair[0])
             )
         ]
     return {"name": name, "parts": rows}

@@ -49,7 +49,7 @@ class Task:
 
     def values(self, seed: int) -> dict[str, Single]:
         """The varied values of the run with a seed."""
-        return {each.name: each.drawn(seed) for each in self.variations}
+        return {variation.name: variation.drawn(seed) for variation in self.variations}
 
 
 @dataclass(slots=True, kw_only=True)

@@ -57,11 +57,11 @@ def _share(part: dict[str, Any]) -> str:
 
 
 def _outcomes(summary: Summary) -> Iterator[tuple[str, ...]]:
-    for each in summary["outcomes"]:
-        low, high = each["interval"]
-        name = "failed run" if each["outcome"] is None else each["outcome"]
+    for outcome in summary["outcomes"]:
+        low, high = outcome["interval"]
+        name = "failed run" if outcome["outcome"] is None else outcome["outcome"]
         interval = f"{percent(low)} to {percent(high)}"
-        yield name, str(each["count"]), percent(each["share"]), interval
+        yield name, str(outcome["count"]), percent(outcome["share"]), interval
 
 
 def _times(summary: Summary) -> Iterator[str]:
@@ -82,8 +82,8 @@ def _coverage(summary: Summary) -> Iterator[str]:
     yield from _some([f"  not visited: {path}" for path in states["missing"]])
     yield from _some(
         [
-            f"  not taken: {each['path']}: {each['outcome']} -> {each['to']}  ({each['src']})"
-            for each in transitions["missing"]
+            f"  not taken: {item['path']}: {item['outcome']} -> {item['to']}  ({item['src']})"
+            for item in transitions["missing"]
         ]
     )
 
@@ -96,23 +96,23 @@ def _some(lines: Sequence[str]) -> Iterator[str]:
 
 def _states(summary: Summary) -> Iterator[str]:
     rows = [("state", "visits", "mean", "longest", "outcomes")]
-    for each in summary["states"]:
-        total = sum(each["outcomes"].values())
-        shares = [f"{name} {percent(n / total)}" for name, n in each["outcomes"].items()]
-        unfinished = [f"{each['unfinished']} not ended"] if each["unfinished"] else []
-        name = f"{'  ' * each['path'].count('/')}{each['path'].rpartition('/')[2]}"
-        mean, longest = seconds(each["mean"]), seconds(each["longest"])
-        rounds = [words] if (words := rounds_in_words(each["rounds"])) else []
+    for state in summary["states"]:
+        total = sum(state["outcomes"].values())
+        shares = [f"{name} {percent(n / total)}" for name, n in state["outcomes"].items()]
+        unfinished = [f"{state['unfinished']} not ended"] if state["unfinished"] else []
+        name = f"{'  ' * state['path'].count('/')}{state['path'].rpartition('/')[2]}"
+        mean, longest = seconds(state["mean"]), seconds(state["longest"])
+        rounds = [words] if (words := rounds_in_words(state["rounds"])) else []
         shares += [*unfinished, *rounds]
-        rows.append((name, str(each["visits"]), mean, longest, ", ".join(shares)))
+        rows.append((name, str(state["visits"]), mean, longest, ", ".join(shares)))
     yield from table(rows)
 
 
 def _varied(summary: Summary) -> Iterator[str]:
-    for each in summary["varied"]:
-        yield f"success by {each['name']}:"
+    for item in summary["varied"]:
+        yield f"success by {item['name']}:"
         rows = []
-        for part in each["parts"]:
+        for part in item["parts"]:
             if not part["runs"]:
                 continue
             what = (
@@ -171,12 +171,17 @@ def _differences(differences: Sequence[Difference]) -> Iterator[str]:
         return
     yield "compared with the earlier sweep:"
     rows = [("  share of runs", "before", "now", "points", "95 % interval")]
-    for each in differences:
-        low, high = each.interval
+    for difference in differences:
+        low, high = difference.interval
         rows.append(
-            (f"  {each.what or 'success'}", percent(each.before), percent(each.after),
-             points(each.difference), f"{points(low)} to {points(high)}")
-        )  # fmt: skip
+            (
+                f"  {difference.what or 'success'}",
+                percent(difference.before),
+                percent(difference.after),
+                points(difference.difference),
+                f"{points(low)} to {points(high)}",
+            )
+        )
     yield from table(rows)
 
 

@@ -57,11 +57,11 @@ def read_variation(text: str) -> Variation:
         raise VariationError(f"`{text}` is not `NAME=LOW..HIGH` or `NAME=A,B,...`")
     first, dots, last = given.partition("..")
     if not dots:
-        return Variation(name, tuple(_single(each.strip()) for each in given.split(",")))
+        return Variation(name, tuple(_single(part.strip()) for part in given.split(",")))
     low, high = _single(first.strip()), _single(last.strip())
-    for each in (low, high):
-        if isinstance(each, bool | str) or not math.isfinite(each):
-            raise VariationError(f"`{name}`: `{each}` is not a number; a range is `0.1..0.5`")
+    for value in (low, high):
+        if isinstance(value, bool | str) or not math.isfinite(value):
+            raise VariationError(f"`{name}`: `{value}` is not a number; a range is `0.1..0.5`")
     assert not isinstance(low, str)
     assert not isinstance(high, str)
     if low > high:
@@ -92,21 +92,22 @@ def check_values(variations: Iterable[Variation], tree: Tree | None, bodies: Ite
     is given twice, and for a value of another kind than the one in the script."""
     names = [*names_of(tree), *(f"scene.{body}.{axis}" for body in bodies for axis in AXES)]
     seen: set[str] = set()
-    for each in variations:
-        if each.name in seen:
-            raise VariationError(f"`{each.name}` is varied twice")
-        seen.add(each.name)
-        if each.name not in names:
+    for variation in variations:
+        if variation.name in seen:
+            raise VariationError(f"`{variation.name}` is varied twice")
+        seen.add(variation.name)
+        if variation.name not in names:
             known = f"values that can vary: {', '.join(names)}" if names else NOTHING_VARIES
-            near = did_you_mean(each.name, names) or known
-            raise VariationError(f"the script has no value `{each.name}`\n{near}")
-        given = each.choices or (each.low, each.high)
-        place = _found(each.name, tree)
+            near = did_you_mean(variation.name, names) or known
+            raise VariationError(f"the script has no value `{variation.name}`\n{near}")
+        given = variation.choices or (variation.low, variation.high)
+        place = _found(variation.name, tree)
         before = place.value if place is not None else 0.0
         for value in given:
             if kind(value) != kind(before):
                 raise VariationError(
-                    f"`{each.name}` is {kind(before)} in the script, `{value_text(value)}` is not"
+                    f"`{variation.name}` is {kind(before)} in the script,"
+                    f" `{value_text(value)}` is not"
                 )
 
 
@@ -119,7 +120,7 @@ def fixed(given: Iterable[str], tree: Tree | None, bodies: Iterable[str]) -> dic
             raise VariationError(f"`{text}` is not `NAME=VALUE`")
         found.append(Variation(name, (_single(value),)))
     check_values(found, tree, bodies)
-    return {each.name: each.choices[0] for each in found}
+    return {variation.name: variation.choices[0] for variation in found}
 
 
 def kind(value: object) -> str:

@@ -102,7 +102,7 @@ def comment(text: str) -> str:
     if text.isascii() and text.isprintable() and text[-1:] not in "\\/":
         return text
     text = "".join(
-        each if each.isprintable() or each == "\t" else ascii(each)[1:-1] for each in text
+        word if word.isprintable() or word == "\t" else ascii(word)[1:-1] for word in text
     )
     return f"{text} //" if text.rstrip().endswith(("\\", "??/")) else text
 

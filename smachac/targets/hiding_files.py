@@ -48,7 +48,7 @@ def _hidden_module(path: PurePosixPath, text: str, files: Mapping[str, str]) -> 
         path = path.parent
     elif _can_import(text, path.stem):
         known += _imported(text)
-    modules = {each.casefold(): each for each in known}
+    modules = {text.casefold(): text for text in known}
     return modules.get(path.stem.casefold(), "")
 
 
@@ -69,6 +69,6 @@ def _imported(text: str) -> Iterator[str]:
     for node in ast.walk(tree):
         match node:
             case ast.Import(names=names):
-                yield from (each.name.partition(".")[0] for each in names)
+                yield from (name.name.partition(".")[0] for name in names)
             case ast.ImportFrom(module=str(module), level=0):
                 yield module.partition(".")[0]

@@ -63,7 +63,7 @@ def verify(
         total=len(items),
         missing=[(item.renamed(shown), items[item], why[item]) for item in missing],
         left_out=generator.left_out,
-        disagreements=[each for each in found if each is not None],
+        disagreements=[disagreement for disagreement in found if disagreement is not None],
     )
 
 

@@ -242,7 +242,7 @@ class PathGenerator:
         def strategy(place: str, options: tuple[str, ...], at: int) -> str | None:
             to_end = self.runner.towards_end(place, options)
             had = used.setdefault(place, set())
-            fresh = [each for each in options if each not in had and each != to_end]
+            fresh = [option for option in options if option not in had and option != to_end]
             ordered: list[str | None] = (
                 [to_end, *fresh] if to_end is not None or not fresh else [*fresh]
             )

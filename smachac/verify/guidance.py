@@ -70,7 +70,7 @@ class Planner:
                     edge for edge in found if edge.kind == "exhausted" and edge.source == START
                 ]
             places = _reachable_places(found)
-            inside[path] = frozenset(each for each in places if isinstance(each, str))
+            inside[path] = frozenset(place for place in places if isinstance(place, str))
             ends = (place[1] for place in places if isinstance(place, tuple) and len(place) == 2)
             if isinstance(node, Concurrence):
                 ends = (end for end in ends if not self.cannot_end(path, end))

@@ -58,7 +58,7 @@ def with_samples(machine: Machine) -> tuple[Machine, tuple[Sample, ...]]:
         return machine, ()
     root = _replaced(machine.root, machine.root.name, samples)
     assert isinstance(root, StateMachine)
-    return replace(machine, root=root), tuple(each for row in samples.values() for each in row)
+    return replace(machine, root=root), tuple(sample for row in samples.values() for sample in row)
 
 
 def _keys_of_python(node: Container) -> list[str]:
@@ -74,8 +74,8 @@ def _keys_of_python(node: Container) -> list[str]:
 def _needs_python(data: Data, names: Collection[str]) -> bool:
     """Whether a value has code that the interpreter does not evaluate. A function is no such code:
     it stays in the value as it is."""
-    for each in expressions_in(data):
-        expr = parse_expression(each.text)
+    for expression in expressions_in(data):
+        expr = parse_expression(expression.text)
         if isinstance(expr, Lambda) and not names:
             continue
         if expr is None or not can_evaluate(expr, names):
@@ -87,8 +87,8 @@ def _replaced(node: Node, path: str, samples: dict[str, list[Sample]]) -> Node:
     if isinstance(node, Leaf):
         return node
     given = {sample.key: sample.value for sample in samples.get(path, ())}
-    children = tuple(_replaced(each, f"{path}/{each.name}", samples) for each in node.children)
-    presets = tuple(_preset(each, given) for each in node.userdata)
+    children = tuple(_replaced(child, f"{path}/{child.name}", samples) for child in node.children)
+    presets = tuple(_preset(preset, given) for preset in node.userdata)
     node = replace(node, children=children, userdata=presets)
     if isinstance(node, Iterator) and node.items is not None and ITEMS in given:
         node = replace(node, items=Value(data=_data(given[ITEMS]), span=node.items.span))

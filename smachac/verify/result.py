@@ -74,10 +74,10 @@ def render_json(verdict: Verdict) -> str:
         },
         "left_out": list(verdict.left_out),
         "differences": [
-            {"target": each.target, "path": each.path, "event": each.at + 1,
-             "expected": list(each.expected), "found": list(each.found),
-             "scenario": scenario_text(each.rows)}
-            for each in verdict.disagreements
+            {"target": disagreement.target, "path": disagreement.path, "event": disagreement.at + 1,
+             "expected": list(disagreement.expected), "found": list(disagreement.found),
+             "scenario": scenario_text(disagreement.rows)}
+            for disagreement in verdict.disagreements
         ],
     }  # fmt: skip
     return json_text(data)
@@ -91,8 +91,8 @@ def render_text(verdict: Verdict) -> str:
         return target if file is None else f"{target} ({on_one_line(file)})"
 
     lines: list[str] = []
-    for each in verdict.disagreements:
-        lines += [*_difference(each, played(each.target)), ""]
+    for disagreement in verdict.disagreements:
+        lines += [*_difference(disagreement, played(disagreement.target)), ""]
     known = ", ".join(f"{count} {kind}" for kind, count in verdict.paths.items() if count)
     total = sum(verdict.paths.values())
     lines.append(f"{total} path{'s' * (total != 1)} ({known})")
@@ -105,8 +105,8 @@ def render_text(verdict: Verdict) -> str:
         lines.append(f"  not taken: {item_text(item)}  ({place(span)}): {why.text}")
     if (more := len(verdict.missing) - MOST_MISSING) > 0:
         lines.append(f"  and {more} more; --format json has them all")
-    lines += [f"left out: {each}" for each in verdict.left_out]
-    different = {each.target for each in verdict.disagreements}
+    lines += [f"left out: {text}" for text in verdict.left_out]
+    different = {disagreement.target for disagreement in verdict.disagreements}
     for target in verdict.targets:
         lines.append(f"{played(target)}: {'differs' if target in different else 'agrees'}")
     return "\n".join(lines) + "\n"

@@ -52,7 +52,7 @@ def sample_value(type_: Type, number: int) -> object:
 
 
 def _collection(name: str, items: tuple[Type | int | str, ...], size: int, number: int) -> object:
-    inside = next((each for each in items if isinstance(each, Type)), Type("int"))
+    inside = next((item for item in items if isinstance(item, Type)), Type("int"))
     values = [sample_value(inside, number + at) for at in range(size)]
     return {f"k{at}": value for at, value in enumerate(values)} if name == "dict" else values
 
@@ -77,7 +77,7 @@ def _struct(name: str, number: int) -> object:
 
 def sample_inputs(machine: Machine) -> dict[str, object]:
     """Values for the declared inputs of a machine that its script does not preset."""
-    preset = {each.key for each in machine.root.userdata}
+    preset = {preset.key for preset in machine.root.userdata}
     return {
         key.name: sample_value(key.type, number)
         for number, key in enumerate(machine.root.inputs)

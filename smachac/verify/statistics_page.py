@@ -52,11 +52,11 @@ def _data(machine: Machine, statistics: TraceStatistics, taken: Coverage) -> dic
         "transitions": len(covered.items),
         "never": [
             {
-                "path": each.path,
-                "text": item_text(each),
-                "failure": each.kind != "rule" and _fails(view.states[each.path], each.outcome),
+                "path": item.path,
+                "text": item_text(item),
+                "failure": item.kind != "rule" and _fails(view.states[item.path], item.outcome),
             }
-            for each in covered.missing()
+            for item in covered.missing()
         ],
     }
 

@@ -61,7 +61,7 @@ def forecast(
                 if view.is_whole(path)
             },
         ),
-        [replace(each, path=view.state(each.path)) for each in found],
+        [replace(sensitivity, path=view.state(sensitivity.path)) for sensitivity in found],
         list(dict.fromkeys(map(view.state, model.as_measured))),
     )
 
@@ -118,11 +118,11 @@ def forecast_text(machine: Machine, statistics: TraceStatistics, found: Forecast
         lines.append("failures, by the successes that the machine would gain without them:")
     states = written(machine).states
     words = {None: "visits", "try": "tries", "item": "items"}
-    for each in found.sensitivities[:MOST_GAINS]:
-        visits = words[states[each.path].next_round(each.outcome)]
+    for sensitivity in found.sensitivities[:MOST_GAINS]:
+        visits = words[states[sensitivity.path].next_round(sensitivity.outcome)]
         lines.append(
-            f"  {each.path}: {each.outcome} ({percent(each.probability)} of its {visits}):"
-            f" +{percent(each.gain)}"
+            f"  {sensitivity.path}: {sensitivity.outcome}"
+            f" ({percent(sensitivity.probability)} of its {visits}): +{percent(sensitivity.gain)}"
         )
     return "".join(f"{on_one_line(line)}\n" for line in lines)
 
@@ -132,8 +132,8 @@ def forecast_dot(machine: Machine, statistics: TraceStatistics, found: Forecast 
     duration of each state, and the successes that the machine would gain without its failures."""
     gains: dict[str, float] = {}
     if not isinstance(found, str):
-        for each in found.sensitivities:
-            gains[each.path] = max(each.gain, gains.get(each.path, 0.0))
+        for sensitivity in found.sensitivities:
+            gains[sensitivity.path] = max(sensitivity.gain, gains.get(sensitivity.path, 0.0))
     view = written(machine)
     states, outcomes = {}, {}
     for path, (state, rounds) in written_statistics(statistics.states, view).items():
@@ -168,9 +168,9 @@ def forecast_json(machine: Machine, statistics: TraceStatistics, found: Forecast
     }
     data["as_measured"] = list(found.as_measured)
     data["failures"] = [
-        {"path": each.path, "outcome": each.outcome,
-         "probability": each.probability, "gain": each.gain}
-        for each in found.sensitivities
+        {"path": sensitivity.path, "outcome": sensitivity.outcome,
+         "probability": sensitivity.probability, "gain": sensitivity.gain}
+        for sensitivity in found.sensitivities
     ]  # fmt: skip
     return json_text(data)
 

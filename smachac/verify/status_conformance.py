@@ -75,10 +75,10 @@ def in_order(statuses: Sequence[Status]) -> list[Status]:
     """The statuses by their time, because those of different containers may arrive in any order; in
     the order of arrival if the clock was set back."""
     by_path: dict[str, list[float]] = {}
-    for each in statuses:
-        by_path.setdefault(each.path, []).append(each.stamp)
+    for status in statuses:
+        by_path.setdefault(status.path, []).append(status.stamp)
     is_back = any(a > b for stamps in by_path.values() for a, b in pairwise(stamps))
-    return list(statuses) if is_back else sorted(statuses, key=lambda each: each.stamp)
+    return list(statuses) if is_back else sorted(statuses, key=lambda status: status.stamp)
 
 
 def judge_statuses(
@@ -135,7 +135,7 @@ class _Acceptor:
             message = f"the script has no container {quote(path)}"
             raise _NotAllowedError(message, self._root.span)
         names = [child.name for child in node.children]
-        active = tuple(each for each in status.active if each in names or each != NO_STATE)
+        active = tuple(text for text in status.active if text in names or text != NO_STATE)
         for label in active:
             if label not in names:
                 message = f"the script has no state {quote(f'{path}/{label}')}"
@@ -155,7 +155,7 @@ class _Acceptor:
     def _start(self, path: str, node: Container, active: tuple[str, ...]) -> None:
         parent, _, name = path.rpartition("/")
         if parent and name not in self._active.get(parent, (name,)):
-            now = " and ".join(self._name(f"{parent}/{each}") for each in self._active[parent])
+            now = " and ".join(self._name(f"{parent}/{text}") for text in self._active[parent])
             message = f"{self._name(path)} starts, but {now or 'nothing'} is active"
             raise _NotAllowedError(message, node.span)
         if parent and path in self.outcomes:
@@ -221,7 +221,7 @@ class _Acceptor:
         edges = self._edges(path, around, child)
         ended = self.outcomes.get(left)
         possible = {ended} if ended is not None else set(edges)
-        found = [each for each in edges if each in possible and edges[each] == target]
+        found = [edge for edge in edges if edge in possible and edges[edge] == target]
         if self._active.get(left) and child.catches not in found:
             message = f"{self._name(left)} is left before its end"
             raise _NotAllowedError(message, child.span)
@@ -237,7 +237,7 @@ class _Acceptor:
     def _edges(self, path: str, around: Node, child: Node) -> dict[str, str]:
         """The targets of a child by its outcomes, as traces write them."""
         assert isinstance(around, nodes.StateMachine | nodes.Sequence)
-        names = frozenset(each.name for each in around.children)
+        names = frozenset(child.name for child in around.children)
         own = possible_leaf_outcomes(child) if isinstance(child, Leaf) else outcome_names(child)
         return {
             edge.outcome: f"{path}{'/' if leads_to_child(edge, names) else ':'}{edge.target}"

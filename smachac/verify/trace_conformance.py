@@ -202,7 +202,7 @@ class Acceptor:
         stopped = {PREEMPTED} if ends_preempted(node) and path in self._asked else set()
         match node:
             case Concurrence():
-                missing = [each.name for each in node.children if each.name not in run.ended]
+                missing = [child.name for child in node.children if child.name not in run.ended]
                 if missing:
                     name = self._name(f"{path}/{missing[0]}")
                     raise _NotAllowedError(f"{self._name(path)} ends, but {name} has not ended")
@@ -229,7 +229,7 @@ class Acceptor:
         }
         if event["to"] not in found:
             to = shown_path(event["to"], self._shown)
-            right = " or ".join(f"`{shown_path(each, self._shown)}`" for each in sorted(found))
+            right = " or ".join(f"`{shown_path(text, self._shown)}`" for text in sorted(found))
             raise _NotAllowedError(
                 f"{quote(outcome)} of {self._name(path)} leads to {quote(to)}, in the script to"
                 f" {right or 'nothing'}"
@@ -242,7 +242,7 @@ class Acceptor:
         """The targets of an outcome of a child: names, with whether they are children."""
         if isinstance(around, Iterator):
             return self._iterator_targets(parent, around, child, outcome)
-        names = frozenset(each.name for each in around.children)
+        names = frozenset(child.name for child in around.children)
         return {
             (edge.target, leads_to_child(edge, names))
             for edge in child.transitions
@@ -321,7 +321,7 @@ def _outcome_words(name: str, outcome: str, allowed: frozenset[str]) -> str:
         return f"{name} ends with {quote(outcome)}, but an exception has ended it"
     if len(allowed) == 1:
         return f"{name} ends with {quote(outcome)}, in the script with `{min(allowed)}`"
-    names = ", ".join(f"`{each}`" for each in sorted(allowed))
+    names = ", ".join(f"`{text}`" for text in sorted(allowed))
     return f"{name} ends with {quote(outcome)}, which is none of its outcomes: {names}"
 
 

@@ -113,7 +113,7 @@ class UntakenTransition(NamedTuple):
 
 def untaken(taken: ScriptCoverage) -> list[UntakenTransition]:
     """The transitions that no trace takes, in the order of the script."""
-    return [UntakenTransition(each, taken.items[each]) for each in taken.missing()]
+    return [UntakenTransition(item, taken.items[item]) for item in taken.missing()]
 
 
 def trace_text(
@@ -122,9 +122,9 @@ def trace_text(
     """The traces, those that are not allowed first, then the missing ones of all `total`
     transitions."""
     lines = refusals(traces)
-    bad = sum(each.fault is not None for each in traces)
-    allowed = [each for each in traces if each.fault is None]
-    lines += [_trace_line(each) for each in allowed[:MOST_TRACES]]
+    bad = sum(trace.fault is not None for trace in traces)
+    allowed = [trace for trace in traces if trace.fault is None]
+    lines += [_trace_line(trace) for trace in allowed[:MOST_TRACES]]
     if (more := len(allowed) - MOST_TRACES) > 0:
         lines.append(f"... and {more} more")
     count = f"{len(traces)} trace{'s' * (len(traces) != 1)}"
@@ -141,8 +141,8 @@ def trace_text(
 
 def refusals(traces: Sequence[JudgedTrace]) -> list[str]:
     """A line for each trace that is not allowed."""
-    bad = [each for each in traces if each.fault is not None]
-    lines = [_trace_line(each) for each in bad[:MOST_TRACES]]
+    bad = [trace for trace in traces if trace.fault is not None]
+    lines = [_trace_line(trace) for trace in bad[:MOST_TRACES]]
     if (more := len(bad) - MOST_TRACES) > 0:
         lines.append(f"... and {more} more that are not allowed")
     return lines
@@ -162,7 +162,7 @@ def trace_json(
 ) -> str:
     """One JSON object with every trace and the missing ones of all `total` transitions."""
     data = {
-        "traces": [dict(_fields(each)) for each in traces],
+        "traces": [dict(_fields(trace)) for trace in traces],
         "coverage": {
             "taken": total - len(missing),
             "total": total,

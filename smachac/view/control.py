@@ -179,9 +179,9 @@ class Control:
                 "stopping": self._stopping,
                 "ended": self._ended,
                 "at": [
-                    {**each.place._asdict(), "outcomes": each.outcomes}
-                    for each in self._waiting
-                    if not each.free
+                    {**waiting.place._asdict(), "outcomes": waiting.outcomes}
+                    for waiting in self._waiting
+                    if not waiting.free
                 ],
                 "breakpoints": [place._asdict() for place in self._breakpoints],
             }

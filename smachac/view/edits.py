@@ -75,8 +75,8 @@ class Edits:
             answer = {
                 "diff": result.diff,
                 "files": sorted(source.name for source in result.sources.values()),
-                "added": [finding_data(each) for each in result.findings_added],
-                "removed": [finding_data(each) for each in result.findings_removed],
+                "added": [finding_data(diagnostic) for diagnostic in result.findings_added],
+                "removed": [finding_data(diagnostic) for diagnostic in result.findings_removed],
                 "proof": PROOFS[edit.operation],
                 "applied": False,
             }
@@ -134,6 +134,8 @@ class Edits:
 
 
 def _first_error(script: EditedScript) -> str:
-    errors = [each for each in script.analysis.report if each.severity is Severity.ERROR]
+    errors = [
+        diagnostic for diagnostic in script.analysis.report if diagnostic.severity is Severity.ERROR
+    ]
     found = f": {errors[0].span}: {errors[0].message}" if errors else ""
     return f"the script has errors, which must be fixed first{found}"

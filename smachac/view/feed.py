@@ -92,7 +92,7 @@ class Feed:
         with self._changed:
             if reader.number is None:
                 states = sorted(self._latest.values(), key=lambda entry: entry.number)
-                found = [*states, *(each for each in self._entries if each.kind in ADDED)]
+                found = [*states, *(entry for entry in self._entries if entry.kind in ADDED)]
             else:
                 number = reader.number
                 self._changed.wait_for(lambda: self._closed or self._number > number, timeout)

@@ -110,7 +110,7 @@ class Ros2Topic:
             if not offered:
                 continue
             latched, volatile = qos.DurabilityPolicy.TRANSIENT_LOCAL, qos.DurabilityPolicy.VOLATILE
-            are_latched = all(each.qos_profile.durability == latched for each in offered)
+            are_latched = all(item.qos_profile.durability == latched for item in offered)
             durability = latched if are_latched else volatile
             quality = qos.QoSProfile(depth=DEPTH, durability=durability)
             if name.endswith(JSON_SUFFIX):

@@ -47,10 +47,10 @@ def report_of(fields: Mapping[str, Any]) -> Report | None:
         return Report(
             stamp=stamp,
             path=path,
-            active=tuple(each for each in active if each != NO_STATE),
+            active=tuple(text for text in active if text != NO_STATE),
             outcome=None if status is None else status.outcome,
             repeated=status is None,
-            ended=None if ended is None else {label: each for label, each in ended.items() if each},
+            ended=None if ended is None else {label: text for label, text in ended.items() if text},
             values=dict(fields.get("userdata", ())),
         )
     except (KeyError, TypeError, ValueError, AttributeError):
@@ -110,13 +110,13 @@ class StatusEvents:
         """The events of the next statuses, which are taken in the order of their time."""
         self._events = []
         waiting = dict(self._held)
-        for report in sorted(reports, key=lambda each: each.stamp):
+        for report in sorted(reports, key=lambda report: report.stamp):
             self._accept(report)
         for path, held in waiting.items():
             if self._held.get(path) is held:
                 self._release(path)
-        numbered = [{"seq": self._number + index, **each}
-                    for index, each in enumerate(self._events, 1)]  # fmt: skip
+        numbered = [{"seq": self._number + index, **event}
+                    for index, event in enumerate(self._events, 1)]  # fmt: skip
         self._number += len(numbered)
         return numbered
 
@@ -212,8 +212,8 @@ class StatusEvents:
         held = self._held.pop(path, None)
         for label in self._active[path] if held is None else ():
             self._events += self._leave(report, label, target)
-        for each in held.transitions if held is not None and target else ():
-            self._events.append({**each, "to": self._place(path) + target})
+        for transition in held.transitions if held is not None and target else ():
+            self._events.append({**transition, "to": self._place(path) + target})
         del self._active[path]
         if "/" in path:
             self._exit(path, outcome)

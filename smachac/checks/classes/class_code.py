@@ -99,7 +99,7 @@ def undeclared_return(context: Context) -> Iterator[Finding]:
     for path, leaf, facts in leaves_by_type(context, declared=False):
         outcomes = names.get(leaf.type, own_names(leaf)).outcomes
         yield from _wrong_returns(path, leaf, facts, outcomes)
-        lost = not facts.always_silent and any(each.outcomes for each in facts.faults)  # SM609
+        lost = not facts.always_silent and any(fault.outcomes for fault in facts.faults)  # SM609
         if facts.silent and not lost and facts.execute and facts.execute not in silent:
             silent.add(facts.execute)  # several types can share the code of their base class
             yield _without_return(path, leaf, facts, outcomes)
@@ -206,7 +206,7 @@ def _missing_return(leaf: Leaf, facts: ClassFacts, known: str) -> str:
 def lost_with_return(leaf: Leaf, facts: ClassFacts) -> list[str]:
     """The outcomes but `preempted` that `execute` does not return where it can end without one."""
     returned = {PREEMPTED, leaf.catches, *(word.text for word in facts.returns)}
-    lost = {name for each in facts.faults for name in each.outcomes}
+    lost = {name for fault in facts.faults for name in fault.outcomes}
     names = outcome_names(leaf) if facts.silent and ANY not in lost else ()
     return [name for name in names if name not in returned | lost]
 
@@ -286,7 +286,7 @@ def _meant(leaf: Leaf, word: str, guess: Guesser) -> str | None:
 
 def _without_tuple(text: str, outcomes: Collection[str]) -> str | None:
     """The help for a tuple that begins with an outcome: `return "found", 1`."""
-    name = next((each for each in outcomes if text.startswith(f"('{each}',")), None)
+    name = next((outcome for outcome in outcomes if text.startswith(f"('{outcome}',")), None)
     return f'write `return "{name}"`: a comma makes a tuple' if name is not None else None
 
 
@@ -367,14 +367,14 @@ def never_returned(context: Context) -> Iterator[Finding]:
     """
     for path, leaf, type_, facts in own_types(context, declared=False):
         known = facts.complete and facts.returns and facts.execute is not None
-        known = known and not any(ANY in each.outcomes for each in facts.faults)  # SM609
+        known = known and not any(ANY in fault.outcomes for fault in facts.faults)  # SM609
         if not known or facts.stub or type_.optional:
             continue
         returned = {word.text for word in facts.returns}
         alone = _text_alone(facts, outcome_names(leaf))
         returned.update(alone, lost_with_return(leaf, facts))  # SM309
-        returned.update(name for each in facts.faults for name in each.outcomes)  # SM609
-        names = [each.name for each in type_.outcomes]
+        returned.update(name for fault in facts.faults for name in fault.outcomes)  # SM609
+        names = [outcome.name for outcome in type_.outcomes]
         declared = names if facts.outcomes is None else [word.text for word in facts.outcomes]
         wrong = returned.difference(names)  # SM309: probably one of the others was meant
         guess = guesser(names)
@@ -413,7 +413,7 @@ def _never(
         help += " 'preempted'`"
         if not facts.checks_stop:
             message += ": a time limit or a stop cannot end it"
-    place = next((each.span for each in leaf.outcomes if each.name == outcome), leaf.span)
+    place = next((result.span for result in leaf.outcomes if result.name == outcome), leaf.span)
     return Finding(
         span=facts.execute,
         message=message,

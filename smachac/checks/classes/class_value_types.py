@@ -120,7 +120,7 @@ def _plain_help(text: str, type_: Type) -> str | None:
     node = parse_code(f"({text})")
     match node:
         case ast.Constant(value=str(word)) if wanted.name == "one_of":
-            return did_you_mean(guesser([str(each) for each in wanted.args])(word))
+            return did_you_mean(guesser([str(argument) for argument in wanted.args])(word))
         case ast.Call(func=ast.Name(id="str" | "repr"), args=[ast.Name(id=name)], keywords=[]):
             return f"write `{name}` without `str()`" if wanted.name in ("int", "float") else None
     return None
@@ -193,7 +193,7 @@ def wrong_loops(context: Context) -> Iterator[Finding]:
         type_ = context.machine.state_types.get(leaf.type)
         if type_ is None or type_.built_in or not facts.loops:
             continue
-        set_ = {each.name: each.value for each in leaf.variables}
+        set_ = {variable.name: variable.value for variable in leaf.variables}
         for name, loop in facts.loops:
             if name not in type_.variables or (leaf.type, name) in seen:
                 continue
@@ -235,7 +235,7 @@ def wrong_operations(context: Context, kind: FaultKind) -> Iterator[Finding]:
         if type_ is None or type_.built_in or type_.open or not facts.operations:
             continue
         types = {key.name: key.type for key in type_.input_keys}
-        lists = {name for name, each in types.items() if present(each).name in ("list", "array")}
+        lists = {name for name, type_ in types.items() if present(type_).name in ("list", "array")}
         for word in facts.operations:
             tree = parsed(word.text)
             found = (
@@ -258,8 +258,8 @@ def wrong_operations(context: Context, kind: FaultKind) -> Iterator[Finding]:
                     related=(
                         *(
                             place
-                            for each in places
-                            for place in other_place(each, "the type of the key is declared here")
+                            for span in places
+                            for place in other_place(span, "the type of the key is declared here")
                         ),
                         *other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
                     ),
@@ -284,25 +284,25 @@ def wrong_comparisons(context: Context) -> Iterator[Finding]:
             continue
         keys = {key.name: key for key in type_.input_keys}
         done = set[str]()
-        for each in facts.compared:
-            key = keys.get(each.name) if each.kind == "key" else None
-            variable = type_.variables.get(each.name) if each.kind == "variable" else None
+        for compared in facts.compared:
+            key = keys.get(compared.name) if compared.kind == "key" else None
+            variable = type_.variables.get(compared.name) if compared.kind == "variable" else None
             declared = key or variable
             kind = present(declared.type) if declared is not None else ANY
             choices = _words_of(kind)
-            if not choices or each.word.text in done.union(choices):
+            if not choices or compared.word.text in done.union(choices):
                 continue
-            done.add(each.word.text)
-            used = {one.word.text for one in facts.compared if one.name == each.name}
+            done.add(compared.word.text)
+            used = {one.word.text for one in facts.compared if one.name == compared.name}
             left = [choice for choice in choices if choice not in used]
-            near = guesser(choices)(each.word.text) or (left[0] if len(left) == 1 else None)
-            quote = each.word.span.text[:1]
+            near = guesser(choices)(compared.word.text) or (left[0] if len(left) == 1 else None)
+            quote = compared.word.span.text[:1]
             written = [f"`{quote}{choice}{quote}`" for choice in ([near] if near else choices)]
             yield Finding(
-                span=each.word.span,
-                message=f"`{leaf.type}` compares `{each.owner}` with `{each.word.text}`, but its"
-                f" interface declares `{each.name}` as `{kind}`",
-                arguments=(leaf.type, each.name, each.word.text),
+                span=compared.word.span,
+                message=f"`{leaf.type}` compares `{compared.owner}` with `{compared.word.text}`,"
+                f" but its interface declares `{compared.name}` as `{kind}`",
+                arguments=(leaf.type, compared.name, compared.word.text),
                 help=f"write {' or '.join(written)}, or correct the interface",
                 related=(
                     *(other_place(key.span, f"the interface declares `{key.name}`") if key else ()),
@@ -317,11 +317,11 @@ def _used_values(context: Context, type_: str, look_up: TableLookUp) -> set[obje
     if look_up.kind == "key":
         return set()
     return {
-        each.value.data
+        variable.value.data
         for _, leaf, _, _ in context.leaves_with_class
         if leaf.type == type_
-        for each in leaf.variables
-        if each.name == look_up.name and isinstance(each.value.data, str)
+        for variable in leaf.variables
+        if variable.name == look_up.name and isinstance(variable.value.data, str)
     }
 
 
@@ -333,30 +333,32 @@ def missing_choices(context: Context) -> Iterator[Finding]:
         if type_ is None or type_.built_in or type_.open or not facts.tables:
             continue
         keys = {key.name: key.type for key in type_.input_keys}
-        variables = {name: each.type for name, each in type_.variables.items()}
+        variables = {name: variable.type for name, variable in type_.variables.items()}
         done = set[tuple[str, str]]()
-        for each in facts.tables:
-            choices = _words_of((keys if each.kind == "key" else variables).get(each.name, ANY))
-            known = {word.text for word in each.keys}
-            known |= {one.word.text for one in facts.compared if one.name == each.name}
+        for table in facts.tables:
+            choices = _words_of((keys if table.kind == "key" else variables).get(table.name, ANY))
+            known = {word.text for word in table.keys}
+            known |= {one.word.text for one in facts.compared if one.name == table.name}
             missing = [choice for choice in choices if choice not in known]
-            if not missing or (each.table, each.name) in done:
+            if not missing or (table.table, table.name) in done:
                 continue
-            done.add((each.table, each.name))
-            more = [word for word in each.keys if word.text not in choices]
+            done.add((table.table, table.name))
+            more = [word for word in table.keys if word.text not in choices]
             if len(more) != 1:
-                used = _used_values(context, leaf.type, each)
+                used = _used_values(context, leaf.type, table)
                 missing = [choice for choice in missing if choice in used]
             if not missing:
                 continue
-            help = f'add `"{missing[0]}": ...` to `{each.table}`'
+            help = f'add `"{missing[0]}": ...` to `{table.table}`'
             if len(missing) == len(more) == 1:
-                help = f'write `"{missing[0]}"` in place of `{more[0].span.text}` in `{each.table}`'
+                help = (
+                    f'write `"{missing[0]}"` in place of `{more[0].span.text}` in `{table.table}`'
+                )
             yield Finding(
-                span=more[0].span if len(more) == 1 else each.word.span,
-                message=f"`{leaf.type}` reads `{each.word.text}`, but `{each.table}` has no entry"
-                f" {listed(missing)}, which the interface allows for `{each.name}`",
-                arguments=(leaf.type, each.table, each.name),
+                span=more[0].span if len(more) == 1 else table.word.span,
+                message=f"`{leaf.type}` reads `{table.word.text}`, but `{table.table}` has no entry"
+                f" {listed(missing)}, which the interface allows for `{table.name}`",
+                arguments=(leaf.type, table.table, table.name),
                 help=help,
                 effect="the code raises KeyError for this value: the machine stops",
                 related=other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
@@ -525,7 +527,7 @@ def _meant_field(record: Type, name: str) -> str | None:
     """The field of a record that is meant by an unknown one: the nearest, or the only one whose
     type has the name, as the field `at` of type `Pose` for `pose`."""
     names = list(fields(record))
-    of_type = [each for each, type_ in fields(record).items()
+    of_type = [text for text, type_ in fields(record).items()
                if present(type_).name.casefold() == name.casefold()]  # fmt: skip
     near = guesser(names)(name) or by_words(name, names)
     return near or (of_type[0] if len(of_type) == 1 else None)
@@ -586,12 +588,12 @@ def _type_of_node(node: ast.expr) -> Type:
     match node:
         case ast.List(elts=items) | ast.Tuple(elts=items):
             if len(items) <= MOST_ITEMS and not any(
-                isinstance(each, ast.Starred) for each in items
+                isinstance(item, ast.Starred) for item in items
             ):
                 return Type("tuple", tuple(map(_type_of_node, items)))
         case ast.Dict(keys=keys, values=values) if len(keys) <= MOST_ITEMS:
-            names = [each.value for each in keys
-                     if isinstance(each, ast.Constant) and isinstance(each.value, str)]  # fmt: skip
+            names = [key.value for key in keys
+                     if isinstance(key, ast.Constant) and isinstance(key.value, str)]  # fmt: skip
             if len(names) == len(keys):
                 return mapping(zip(names, map(_type_of_node, values), strict=True))
     return ANY
@@ -603,7 +605,7 @@ def _data(value: object) -> Data:
         case None | bool() | int() | float() | str():
             return value
         case list() | tuple():
-            return tuple([_data(each) for each in value])
+            return tuple([_data(item) for item in value])
         case dict() if all(isinstance(key, str) for key in value):
-            return Struct(entries=tuple([(key, _data(each)) for key, each in value.items()]))
+            return Struct(entries=tuple([(key, _data(item)) for key, item in value.items()]))
     raise ValueError(value)

@@ -189,12 +189,17 @@ def _stale_finding(
 
 def _changes(differences: Sequence[Difference]) -> str:
     """What to change in a class that was written for another version of its interface."""
-    changes = dict.fromkeys(each.change for each in differences[:3] if each.change)
+    changes = dict.fromkeys(
+        difference.change for difference in differences[:3] if difference.change
+    )
     return "; ".join(changes) or "adapt the class to the interface"
 
 
 def _places(differences: Sequence[Difference]) -> tuple[Related, ...]:
-    return tuple(Related(span=each.word.span, message=each.word.text) for each in differences)
+    return tuple(
+        Related(span=difference.word.span, message=difference.word.text)
+        for difference in differences
+    )
 
 
 def _judged(of: StateClass, context: Context) -> Declared:
@@ -242,7 +247,7 @@ def _differences(type_: StateType, found: Declared) -> Iterator[Difference]:
         left_to_the_script = f"{what.replace(' ', '_')}s" in type_.given
         if words is None or left_to_the_script or (what == "outcome" and type_.optional):
             continue
-        names = [each.name for each in wanted]
+        names = [item.name for item in wanted]
         yield from _unlike(f"`{type_.name}.yml`", what, words, names, found)
     yield from found.others
 

@@ -41,14 +41,14 @@ def renamed_in_interface(
     if not uses or new in {word.text for word in ways[part]}:
         return None
     places = other_place(old.span, f"`{leaf.type}` declares it here")
-    places += tuple(Related(span=each.span, message="also here") for each in uses[1:])
+    places += tuple(Related(span=use.span, message="also here") for use in uses[1:])
     help = f"write `{new}` in place of `{old.text}`, also where `{leaf.type}` declares it, or"
     names: dict[str, tuple[Outcome | Key, ...]] = {
         "outcomes": leaf.outcomes,
         "input_keys": leaf.inputs,
         "output_keys": leaf.outputs,
     }
-    declared_at = next((each.span for each in names[part] if each.name == new), leaf.span)
+    declared_at = next((name.span for name in names[part] if name.name == new), leaf.span)
     file = PurePath(declared_at.source.name)
     other = "correct the interface"
     if file.name.partition(".")[0] == leaf.type:

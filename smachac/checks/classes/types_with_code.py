@@ -84,7 +84,7 @@ def declared_here(leaf: Leaf, names: Sequence[Outcome | Key]) -> tuple[Related, 
     for a class of a program in Python."""
     if notation.is_python(leaf):
         return ()
-    spans = [each.span for each in (*names, *leaf.outcomes)]
+    spans = [name.span for name in (*names, *leaf.outcomes)]
     span = next((span for span in spans if span.source is not leaf.span.source), NOWHERE)
     return other_place(span, f"the interface of `{leaf.type}`")
 

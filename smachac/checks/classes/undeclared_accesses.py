@@ -81,7 +81,7 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
             message = f"{notation.code_of(leaf)} reads `{word.text}`, which is not {declared}"
             near = guesser(key for key in inputs if key not in used)(word.text)
             help = did_you_mean(near) or _added(leaf, facts, "input_keys", word.text)
-            renamed = [each.key for each in leaf.remaps if each.to == word.text]
+            renamed = [remap.key for remap in leaf.remaps if remap.to == word.text]
             if renamed and renamed[0] in inputs:
                 help = f"write `{_owner(word)}.{renamed[0]}`: `{word.text}` is the name of this key"
                 help += f" around `{leaf.name}`"
@@ -93,7 +93,7 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 declared = notation.own_key(leaf, "output")
                 message = f"{notation.code_of(leaf)} reads `{word.text}`, which is only {declared}"
                 if _sets_first(facts, word) or not any(
-                    _comes_from_outside(leaf, each, word.text) for each in levels
+                    _comes_from_outside(leaf, level, word.text) for level in levels
                 ):
                     help = _local_variable(word)
             if word.text in DICTIONARY_METHODS and _is_called(word):
@@ -120,14 +120,14 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
 
 def _sets_first(facts: ClassFacts, word: Word) -> bool:
     """Whether code sets a key that it reads without reading it there, as `+=` does."""
-    places = {each.span for each in facts.reads}
-    return any(each.text == word.text and each.span not in places for each in facts.writes)
+    places = {read.span for read in facts.reads}
+    return any(write.text == word.text and write.span not in places for write in facts.writes)
 
 
 def _comes_from_outside(leaf: Leaf, around: nodes.Container, key: str) -> bool:
     """Whether a key of a leaf can have a value before the leaf sets it."""
     outer = remapping(leaf)[key]
-    known = {each.key for each in around.userdata} | {each.name for each in around.inputs}
+    known = {preset.key for preset in around.userdata} | {input_.name for input_ in around.inputs}
     return outer in known or any(
         outer in outer_outputs(child) for child in around.children if child is not leaf
     )

@@ -142,9 +142,9 @@ def _called_too_early(
 ) -> Iterator[Finding]:
     """SM316 for a call of a function of the user that fails or gives no function, where the state
     can call that function itself."""
-    if call.keywords or any(isinstance(each, ast.Starred) for each in call.args):
+    if call.keywords or any(isinstance(argument, ast.Starred) for argument in call.args):
         return
-    values = [each.kind in ("constant", "truth") for each in facts.results]
+    values = [result.kind in ("constant", "truth") for result in facts.results]
     fails = not facts.accepts(len(call.args))
     certain = fails or facts.silent or (values and all(values))
     if certain and slot.arguments is not None and facts.accepts(len(slot.arguments)):
@@ -169,15 +169,15 @@ def _called_too_early(
 def _arguments(slot: CodeSlot, userdata: str) -> str:
     """The arguments of the function of a slot, in which the userdata has the name of the code."""
     names = slot.arguments or ("userdata",)
-    return ", ".join(userdata if each == "userdata" else each for each in names)
+    return ", ".join(userdata if name == "userdata" else name for name in names)
 
 
 def _with_keys(slot: CodeSlot, tree: ast.expr, name: str, node: Node) -> str:
     """Code in which the names of input keys stand for the keys of userdata."""
     text, keys = slot.code.text, {key.name for key in node.inputs}
-    for each in reversed(free_names(tree)):
-        if each.id in keys:
-            start, _ = node_range(text, each)
+    for word in reversed(free_names(tree)):
+        if word.id in keys:
+            start, _ = node_range(text, word)
             text = f"{text[:start]}{name}.{text[start:]}"
     return text
 
@@ -189,7 +189,7 @@ def _as_code(slot: CodeSlot, text: str) -> str:
     before = source.text[max(0, start - 1) : start + 1]
     if not slot.must_be_called and "`" not in slot.code.span.text:
         return in_quotes(f"`{text}`")
-    quoted = any(each in before for each in "'\"`|>") or "\n" in slot.code.span.text
+    quoted = any(text in before for text in "'\"`|>") or "\n" in slot.code.span.text
     return f"`{text}`" if quoted else f"`{in_quotes(text)}`"
 
 
@@ -274,7 +274,7 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
             continue
         due = slot.arguments
         if accepts(tree, len(due)):
-            found = swapped([each.arg for each in parameters(tree)], due)
+            found = swapped([parameter.arg for parameter in parameters(tree)], due)
             what = f"has the arguments {_names(found)}, but the state passes {_names(due)}"
             effect: str | None = ORDER_EFFECT
             if not found:
@@ -326,7 +326,7 @@ def _wrong_parameters(
 
 def own_parameters(own: Sequence[str], due: Iterable[str]) -> list[str]:
     """The names of parameters that a function needs, as the user has written them."""
-    return [next((each for each in own if means(each, name)), _short(name)) for name in due]
+    return [next((text for text in own if means(text, name)), _short(name)) for name in due]
 
 
 def _definition_help(slot: CodeSlot, facts: FunctionFacts, due: list[str]) -> str:
@@ -343,16 +343,24 @@ def _definition_help(slot: CodeSlot, facts: FunctionFacts, due: list[str]) -> st
 def _head_help(node: Node, tree: ast.Lambda, due: tuple[str, ...]) -> str:
     """The help for a lambda with wrong arguments: its correct beginning, and the way to read a key
     that was written as an argument."""
-    given = [each.arg for each in parameters(tree)]
+    given = [parameter.arg for parameter in parameters(tree)]
     names = own_parameters(given, due)
     help = f"begin it with `lambda {', '.join(names)}:`"
-    read = {each.id for each in ast.walk(tree.body) if isinstance(each, ast.Name)}
-    own = [each.arg for each in parameters(tree) if not any(means(each.arg, arg) for arg in due)]
+    read = {node.id for node in ast.walk(tree.body) if isinstance(node, ast.Name)}
+    own = [
+        parameter.arg
+        for parameter in parameters(tree)
+        if not any(means(parameter.arg, arg) for arg in due)
+    ]
     keys = [name for name in own if name in read]
-    if "userdata" not in due or not keys or own == [each.arg for each in parameters(tree)]:
+    if (
+        "userdata" not in due
+        or not keys
+        or own == [parameter.arg for parameter in parameters(tree)]
+    ):
         return help
     help += f", and read {', '.join(f'`{key}` as `{USERDATA[0]}.{key}`' for key in keys)}"
-    undeclared = [key for key in keys if key not in {each.name for each in node.inputs}]
+    undeclared = [key for key in keys if key not in {input_.name for input_ in node.inputs}]
     if undeclared:
         help += f"; add {listed(undeclared)} to the `input_keys` of `{node.name}`"
     return help
@@ -369,7 +377,7 @@ def _short(argument: str) -> str:
 
 def _head(slot: CodeSlot, tree: ast.Lambda) -> Span:
     """The span of the arguments of a lambda, or of the word `lambda`."""
-    found = [each for each in ast.walk(tree.args) if isinstance(each, ast.arg)]
+    found = [node for node in ast.walk(tree.args) if isinstance(node, ast.arg)]
     if not found:
         return place_in(slot.code, 0, len("lambda"))
     first, last = found[0], found[-1]
@@ -463,8 +471,8 @@ def wrong_result(context: Context) -> Iterator[Finding]:
                 related=(
                     *(
                         place
-                        for each in _presets(context, path, slot, result)
-                        for place in other_place(each.span, written(each))
+                        for preset in _presets(context, path, slot, result)
+                        for place in other_place(preset.span, written(preset))
                     ),
                     *calls(node, slot.code.span),
                 ),
@@ -545,7 +553,7 @@ def _value_fault(
 def _number_help(presets: list[TypeFlow]) -> str:
     """The help for a duration that is no number: the number, where a text of the script was meant
     as one."""
-    texts = (each.value for each in presets if isinstance(each.value, str))
+    texts = (preset.value for preset in presets if isinstance(preset.value, str))
     meant = (number_meant(text, SECONDS) for text in texts)
     found = next((help for help in meant if help is not None), None)
     return found or "return a number, for example with `float(...)`"
@@ -555,18 +563,18 @@ def _presets(context: Context, path: str, slot: CodeSlot, result: ast.expr) -> l
     """The values of the script for the keys that a duration reads."""
     if slot.role != "duration":
         return []
-    keys = [each.attr for each in ast.walk(result) if isinstance(each, ast.Attribute)]
+    keys = [node.attr for node in ast.walk(result) if isinstance(node, ast.Attribute)]
     cells = [context.types.cells.get((path, key)) for key in dict.fromkeys(keys)]
     origins = [
         alike[0].origin for cell in cells if cell is not None for alike in cell.flows.values()
     ]
-    return [each for each in dict.fromkeys(origins) if each.how == "value"]
+    return [fromkey for fromkey in dict.fromkeys(origins) if fromkey.how == "value"]
 
 
 def _instead(call: ast.Call, value: ast.expr, method: str, span: Span) -> str:
     """The code that returns the changed value, for the scalar at `span`."""
     owner = ast.unparse(value)
-    given = [in_quotes_for(ast.unparse(each), span) for each in call.args]
+    given = [in_quotes_for(ast.unparse(argument), span) for argument in call.args]
     match method, given:
         case "append", [item]:
             return f"write `{owner} + [{item}]`, which is the longer list"

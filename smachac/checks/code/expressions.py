@@ -134,9 +134,9 @@ def _is_comprehension(tree: ast.expr | None) -> bool:
             elements = [key, element]
         case _:
             return False
-    used = {each.id for part in elements for each in ast.walk(part) if isinstance(each, ast.Name)}
-    targets = (each for loop in loops for each in ast.walk(loop.target))
-    bound = {each.id for each in targets if isinstance(each, ast.Name)}
+    used = {node.id for part in elements for node in ast.walk(part) if isinstance(node, ast.Name)}
+    targets = (node for loop in loops for node in ast.walk(loop.target))
+    bound = {target.id for target in targets if isinstance(target, ast.Name)}
     return bool(used & bound) or any(isinstance(loop.iter, ast.Call) for loop in loops)
 
 

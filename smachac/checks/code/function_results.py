@@ -100,9 +100,9 @@ def always_true(context: Context) -> Iterator[Finding]:
         if not isinstance(tree, ast.Lambda) or slot.quoted or not is_condition(slot):
             continue
         found = results(tree)
-        values = [each.value for each in found if isinstance(each, ast.Constant)]
-        texts = all(isinstance(each, str) for each in values)
-        if len(values) < len(found) or not all(values) or any(each is True for each in values):
+        values = [constant.value for constant in found if isinstance(constant, ast.Constant)]
+        texts = all(isinstance(value, str) for value in values)
+        if len(values) < len(found) or not all(values) or any(value is True for value in values):
             continue
         if texts or len(values) > 1:
             yield _true_condition(path, node, slot, slot.code.span, len(values), texts, tree.body)

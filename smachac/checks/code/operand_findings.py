@@ -51,10 +51,10 @@ def _in_other_unit(site: ExpressionSite, fault: Fault) -> str:
         node, name = origins[0].node, origins[0].key
         if node is None or isinstance(node, Leaf):
             continue
-        for each in node.userdata:
-            if each.key == name and is_number(each.value.data) and each.type.args == (given,):
-                number = f"{each.value.data * factor:.6g}"
-                new = f"{{type: {each.type.name}<{wanted}>, value: {number}}}"
+        for preset in node.userdata:
+            if preset.key == name and is_number(preset.value.data) and preset.type.args == (given,):
+                number = f"{preset.value.data * factor:.6g}"
+                new = f"{{type: {preset.type.name}<{wanted}>, value: {number}}}"
                 return f"or write `{name}: {new}` in the `userdata` of `{node.name}`"
     return ""
 
@@ -74,7 +74,7 @@ def fault_finding(
 ) -> Finding:
     """The finding on a fault, with its place, its help and the origins of the values."""
     guess = did_you_mean(guesser(fault.choices)(fault.word)) if fault.choices else None
-    choices = f"use one of {', '.join(f'`{each}`' for each in fault.choices)}"
+    choices = f"use one of {', '.join(f'`{choice}`' for choice in fault.choices)}"
     span = site.expression.span
     if fault.entry:
         guess = f"write `{in_quotes_for(fault.entry, span)}` for the entry of the mapping"

@@ -40,12 +40,12 @@ def wrong_outcomes(context: Context) -> Iterator[Finding]:
         if not names or not every:
             continue
         code = message_code(slot, node, found, functions)
-        judged = [_fault(node, names, each, code, found) for each in every]
-        faults = [each for each in judged if each is not None]
+        judged = [_fault(node, names, result, code, found) for result in every]
+        faults = [fault for fault in judged if fault is not None]
         help = _truth_help(names, every)
         if help is not None:
-            faults = [each._replace(help=help) if isinstance(each.result.value, bool) else each
-                      for each in faults]  # fmt: skip
+            faults = [fault._replace(help=help) if isinstance(fault.result.value, bool) else fault
+                      for fault in faults]  # fmt: skip
         certain = len(faults) == len(every)
         for fault in _first_of_each(faults):
             yield _finding(path, node, slot, functions.get(slot.code.text), fault, certain)
@@ -73,15 +73,15 @@ def _finding(
 def _first_of_each(faults: Sequence[_Fault]) -> list[_Fault]:
     """The first fault of each value; the two truth values are one."""
     first: dict[object, _Fault] = {}
-    for each in faults:
-        truth = each.result.kind == "truth" or isinstance(each.result.value, bool)
-        first.setdefault("truth" if truth else (each.result.text,), each)
+    for fault in faults:
+        truth = fault.result.kind == "truth" or isinstance(fault.result.value, bool)
+        first.setdefault("truth" if truth else (fault.result.text,), fault)
     return list(first.values())
 
 
 def _truth_help(names: Sequence[str], results: Sequence[Result]) -> str | None:
     """The outcomes to return in place of the constant truth values of a function."""
-    given = {each.value for each in results if isinstance(each.value, bool)}
+    given = {result.value for result in results if isinstance(result.value, bool)}
     if len(names) < 2 or not given:
         return None
     outcomes = [(True, names[0]), (False, names[1])]
@@ -118,7 +118,7 @@ def _part_type(result: Result, code: MessageCode | None, found: Definitions) -> 
     if result.part is None or code is None:
         return ""
     content = content_of(result.part, code, found)
-    texts = [each for each in content if isinstance(each, FieldType) and _is_text(each)]
+    texts = [type_ for type_ in content if isinstance(type_, FieldType) and _is_text(type_)]
     if not content or texts:
         return ""
     first = content[0]

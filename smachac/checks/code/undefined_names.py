@@ -228,10 +228,10 @@ def _attributes_used(node: Node, code: Expression) -> Iterator[_Attribute]:
     used = [*attributes(tree)] if tree is not None else []
     keys = {key.name for key in node.inputs}
     free = {name.id for name in free_in(code.text)} - keys if used else set()
-    for module, each in used:
-        meant = missing_name(module, each.attr) if module.partition(".")[0] in free else None
+    for module, attribute in used:
+        meant = missing_name(module, attribute.attr) if module.partition(".")[0] in free else None
         if meant is not None:
-            yield _Attribute(code, module, each, meant)
+            yield _Attribute(code, module, attribute, meant)
 
 
 _PACKAGES: Mapping[str, str] = {
@@ -321,7 +321,7 @@ def _lacks_parameter(use: _Use, types: Mapping[str, StateType]) -> bool:
 def _packages(tree: ast.expr | None) -> set[str]:
     """The packages of messages in code, which a program imports: `std_msgs.msg.Bool()`."""
     attributes = (
-        each for each in (ast.walk(tree) if tree else ()) if isinstance(each, ast.Attribute)
+        node for node in (ast.walk(tree) if tree else ()) if isinstance(node, ast.Attribute)
     )
     return {found.partition(".")[0] for found in map(message_module, attributes) if found}
 
@@ -334,7 +334,9 @@ def _fix(use: _Use, imported: list[str]) -> NameFix | None:
     """The cure of an undefined name, if what it means is known. `imported` are the classes that a
     program imports for the state."""
     word = use.name.id
-    own = [each.arg for each in parameters(use.lambda_)] if use.lambda_ is not None else []
+    own = (
+        [parameter.arg for parameter in parameters(use.lambda_)] if use.lambda_ is not None else []
+    )
     if word in USERDATA and own:
         why = f"`{word}` is not this function's argument (`{own[0]}`)"
         return NameFix(f"write `{own[0]}`", why, _edits(use, own[0]))
@@ -349,7 +351,7 @@ def _fix(use: _Use, imported: list[str]) -> NameFix | None:
     if word in keys:
         return NameFix(f"`{word}` is a key: read it as `ud.{word}` in a function, `lambda ud: ...`")
     ending = re.search("Goal$|Request$", word)
-    near = next((each for each in imported if ending and each.endswith(ending[0])), None)
+    near = next((text for text in imported if ending and text.endswith(ending[0])), None)
     if near is not None:
         return NameFix(f"did you mean `{near}`?")
     near = guesser([*own, *keys])(word) if own and not _is_called(use) else None
@@ -398,15 +400,15 @@ def _own_fix(use: _Use, own: Sequence[Source]) -> NameFix | None:
 def _param_fix(use: _Use) -> NameFix:
     """The cure of `params.speed` in code: a look-up."""
     tree = python_tree(use.code.text)
-    for each in ast.walk(tree) if tree is not None else ():
-        match each:
+    for node in ast.walk(tree) if tree is not None else ():
+        match node:
             case ast.Attribute(value=ast.Name(id="params"), attr=param):
                 pass
             case ast.Subscript(value=ast.Name(id="params"), slice=ast.Constant(str() as param)):
                 pass
             case _:
                 continue
-        before, found, after = use.code.text.partition(ast.unparse(each))
+        before, found, after = use.code.text.partition(ast.unparse(node))
         if found:
             parts = [f"'{part}'" for part in (before, after) if part]
             parts.insert(1 if before else 0, f"[params, {param}]")
@@ -420,7 +422,7 @@ def _param_fix(use: _Use) -> NameFix:
 def _is_called(use: _Use) -> bool:
     tree = use.lambda_
     calls = ast.walk(tree) if tree is not None else ()
-    return any(isinstance(each, ast.Call) and each.func is use.name for each in calls)
+    return any(isinstance(call, ast.Call) and call.func is use.name for call in calls)
 
 
 def _edits(use: _Use, text: str) -> tuple[Edit, ...]:

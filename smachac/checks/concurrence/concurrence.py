@@ -88,10 +88,10 @@ def dead_rule(context: Context) -> Iterator[Finding]:
                 yield from _dead_rules(path, container)
             case nodes.Iterator(sugar=""):
                 yield from _dead_renames(path, container)
-    for each in context.judged:
-        yield from _shadowed_rules(each)
-        if each.concurrence.node.join == "any":
-            yield from _rules_for_both(each)
+    for judged in context.judged:
+        yield from _shadowed_rules(judged)
+        if judged.concurrence.node.join == "any":
+            yield from _rules_for_both(judged)
 
 
 def _without_conditions(path: str, container: Concurrence, entry: OutcomeRule) -> Finding:
@@ -120,7 +120,7 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
         return  # SM106: a rule can be about a state that has the name of another one
     guess = guesser(children)
     states = f"use one of its states: {listed(children)}" if children else "add states to it"
-    inverted = [each.rule for each in inverted_rules(container)]
+    inverted = [inverted.rule for inverted in inverted_rules(container)]
     transposed = transposed_rules(container)
     for entry in container.rules:
         if entry in inverted or entry.outcome in transposed:  # SM103 reports them
@@ -180,8 +180,8 @@ def _other_outcome(container: Concurrence, child: Node, outcome: str) -> str:
     names = outcome_names(child)
     known = f"use one of its outcomes: {listed(names)}" if names else "it has no outcomes"
     meant = guesser(names).sure(outcome) or of_one_meaning(child, outcome, names)
-    alike = [each.name for each in container.children
-             if each is not child and each.type == child.type]  # fmt: skip
+    alike = [state.name for state in container.children
+             if state is not child and state.type == child.type]  # fmt: skip
     is_searched = meant is None and len(container.rules) <= MOST_COMPARED_RULES
     others = {part.outcome: part.child for rule in container.rules for part in rule.when
               if part.child in alike and part.outcome in names
@@ -196,8 +196,8 @@ def _other_outcome(container: Concurrence, child: Node, outcome: str) -> str:
 
 def _documented(child: Node) -> str | None:
     """The help for an unknown outcome of a state whose type documents its outcomes."""
-    docs = [(each.name, each.doc.strip().rstrip(".")) for each in child.outcomes
-            if each.name not in (PREEMPTED, child.catches)]  # fmt: skip
+    docs = [(outcome.name, outcome.doc.strip().rstrip(".")) for outcome in child.outcomes
+            if outcome.name not in (PREEMPTED, child.catches)]  # fmt: skip
     if not docs or not all(doc for _, doc in docs):
         return None
     first = (f"`{name}` ({doc[0].lower()}{doc[1:]})" for name, doc in docs)
@@ -411,11 +411,11 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
                 - RIGHT: {template: ScriptedState, outcomes: [done, slipped]}
               transitions: {ready: ready, half: failed, failed: failed}
     """
-    for each in context.judged:
-        node, rules = each.concurrence.node, each.concurrence.rules
+    for judged in context.judged:
+        node, rules = judged.concurrence.node, judged.concurrence.rules
         if node.default_outcome and not node.rules:
             continue
-        missed = _missed(each)
+        missed = _missed(judged)
         if missed is None:
             continue
         needed = rules.shown(missed, {}, rules.all)
@@ -440,7 +440,7 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
             effect=effect,
             related=calls(node, span),
             severity=severity,
-            node=each.path,
+            node=judged.path,
         )
 
 
@@ -546,16 +546,16 @@ def overlapping_rules(context: Context) -> Iterator[Finding]:
               transitions: {left: left, right: right, neither: neither}
     """
     missing: frozenset[str] | None = None
-    for each in context.judged:
-        if len(each.concurrence.written) > 1:
+    for judged in context.judged:
+        if len(judged.concurrence.written) > 1:
             missing = missing_joins(context) if missing is None else missing
-            if each.path in missing:
+            if judged.path in missing:
                 continue  # SM407
-            spaces = [without_other(each.whole)]
-            if each.concurrence.node.join == "any":
-                spaces = [space for space, _ in each.unstopped]
+            spaces = [without_other(judged.whole)]
+            if judged.concurrence.node.join == "any":
+                spaces = [space for space, _ in judged.unstopped]
             try:
-                yield from _overlaps(each, spaces)
+                yield from _overlaps(judged, spaces)
             except UndecidedError:
                 continue
 

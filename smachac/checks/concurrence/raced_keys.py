@@ -13,10 +13,10 @@ def is_never_set(writer: Node, key: str) -> bool:
     if not isinstance(writer, Leaf) or not functions(writer, "callbacks"):
         return False
     own = own_key(writer, key)
-    results = {each.name for each in writer.outputs if each.role == "result"}
+    results = {output.name for output in writer.outputs if output.role == "result"}
     return own in results - callback_names(writer)
 
 
 def own_key(writer: Node, key: str) -> str:
     """The name that a branch has for a key that it writes."""
-    return next((each.name for each in outputs_to(writer, key)), key)
+    return next((output.name for output in outputs_to(writer, key)), key)

@@ -126,14 +126,14 @@ def _race(
         message += " at the same time" if len(writing) == 1 else ""
     here = writing[:2][-1]
     if raced is not None:
-        here = next(each for each in writing if each[0] is raced.child)
+        here = next(pair for pair in writing if pair[0] is raced.child)
     own, span = own_key(here[0], key), here[0].span
     other = notation.mapping(here[0], "remapping", [(own, f"{key}_2")])
     help = f"write `{other}` at `{here[0].name}`, for a key of its own, or"
     help += " run one branch after the other"
     edits: tuple[Edit, ...] = ()
     if raced is not None:
-        written = [each for each in here[0].remaps if each.to == key]
+        written = [remap for remap in here[0].remaps if remap.to == key]
         span = written[0].to_span if written and written[0].to_span.source is span.source else span
         help = f"write `{notation.entry(here[0], own, raced.meant)}` in the `remapping` of"
         help += f" `{here[0].name}`: nothing sets `{raced.meant}`, which is an output of"
@@ -289,7 +289,7 @@ def _choice(origin: Node, claim: str) -> Variable | None:
     if not isinstance(origin, Leaf):
         return None
     parts = claim.split(".")
-    named = [each for each in origin.variables if each.value.data in parts]
+    named = [variable for variable in origin.variables if variable.value.data in parts]
     return named[0] if len(named) == 1 else None
 
 
@@ -302,14 +302,14 @@ def _free(machine: Machine, clash: _Clash) -> list[str]:
     if clash.chosen.name == "limb" and machine.robot is not None:
         choices = machine.robot.limb_names
     taken = {part for claim in clash.claimed for part in claim.split(".")}
-    return [each for each in choices if isinstance(each, str) and each not in taken]
+    return [choice for choice in choices if isinstance(choice, str) and choice not in taken]
 
 
 def _clash_finding(machine: Machine, path: str, container: Concurrence, clash: _Clash) -> Finding:
     """The finding, at the value that chooses the resource where another one is free."""
     child, chosen = clash.child, clash.chosen
     names = sorted({one.name for one, _, _ in clash.holding})
-    others = [each for each in clash.holding if each[0] is not child][:MOST_PLACES]
+    others = [row for row in clash.holding if row[0] is not child][:MOST_PLACES]
     places = [
         place
         for one, what, inner in others
@@ -364,5 +364,5 @@ def _same_choice(origin: Node, claim: str, span: Span) -> bool:
 def _as_written(claim: str, origin: Node) -> str:
     """A claim with its names in braces, as the script or the state type has it: their values can
     depend on the caller of a sub-script."""
-    same = (each for each in origin.claims if claim.startswith(each.partition("{")[0]))
+    same = (text for text in origin.claims if claim.startswith(text.partition("{")[0]))
     return claim if claim in origin.claims else next(same, claim)

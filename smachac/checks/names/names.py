@@ -199,10 +199,10 @@ MOST_ALIKE = 5
 
 def _with_others(found: Finding, others: list[_Lost]) -> Finding:
     """The finding on the first of several transitions with one unknown target, with the others."""
-    places = dict.fromkeys(each.step.target_span for each in others)
+    places = dict.fromkeys(other.step.target_span for other in others)
     places.pop(found.span, None)
     more = [part for span in [*places][:MOST_ALIKE] for part in other_place(span, "and here")]
-    words = [Word(each.step.target, each.step.target_span) for each in others]
+    words = [Word(other.step.target, other.step.target_span) for other in others]
     edits = [edit for word in words if word.span in places
              for edit in respelt(word, others[0].sure)]  # fmt: skip
     return replace(
@@ -411,7 +411,7 @@ CATCH_ALL = frozenset(["*", "_", "any", "default", "else", "other", "others", "o
 def _catch_all(child: Node, step: Transition) -> str | None:
     """The help for a transition for a word that other languages use for all outcomes without a
     transition."""
-    handled = {each.outcome for each in child.transitions}
+    handled = {transition.outcome for transition in child.transitions}
     rest = [name for name in outcome_names(child) if name not in handled]
     if step.outcome not in CATCH_ALL or not rest:
         return None
@@ -461,7 +461,9 @@ def _retried(child: Node, outcome: str) -> str | None:
     if child.sugar == "retry":
         end = child.exhausted_outcome
         instead = f"after the last try, `retry` ends with `{end}`"
-        if end in {each.outcome for each in child.transitions if each.origin == "written"}:
+        if end in {
+            transition.outcome for transition in child.transitions if transition.origin == "written"
+        }:
             return f"remove `{outcome}:`; {instead}, which has a transition"
         return f"write `{end}:` in place of `{outcome}:`; {instead}"
     if child.sugar == "for_each":

@@ -52,7 +52,9 @@ def other_outcome(child: Node, step: Transition) -> str:
     field = _missing_field(child, step.outcome)
     if field is not None:
         return field
-    handled = {each.outcome for each in child.transitions if each.origin == "written"}
+    handled = {
+        transition.outcome for transition in child.transitions if transition.origin == "written"
+    }
     if handled.issuperset(name for name in names if name != child.catches):
         is_one = len(names) == 1
         have = "its outcome" if is_one else "its outcomes"
@@ -67,8 +69,10 @@ def missing_default(node: Node) -> Transition | None:
     left = {*outcome_names(node)}.difference(step.outcome for step in node.transitions)
     unknown = unknown_outcomes(node)
     is_default = any(
-        each.name == "default_outcome" and each.span == node.span and each.value.data in left
-        for each in variables
+        variable.name == "default_outcome"
+        and variable.span == node.span
+        and variable.value.data in left
+        for variable in variables
     )
     return unknown[0] if is_default and len(unknown) == 1 else None
 
@@ -97,4 +101,4 @@ def _missing_field(child: Node, outcome: str) -> str | None:
 def _has_limit(child: Node) -> bool:
     """Whether a variable of the type of a state is a time limit, after which it ends with another
     outcome."""
-    return isinstance(child, Leaf) and any(TIMEOUT in each.name for each in child.variables)
+    return isinstance(child, Leaf) and any(TIMEOUT in variable.name for variable in child.variables)

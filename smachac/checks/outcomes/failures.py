@@ -92,10 +92,10 @@ def masked_failure(context: Context) -> Iterator[Finding]:
               transitions: {ready: ready, failed: failed}
     """
     containers = dict(context.containers)
-    for each in context.judged:
-        around = containers.get(each.path.rpartition("/")[0], each.concurrence.node)
+    for judged in context.judged:
+        around = containers.get(judged.path.rpartition("/")[0], judged.concurrence.node)
         try:
-            yield from _masked(context, each, around)
+            yield from _masked(context, judged, around)
         except UndecidedError:
             continue
     for path, container in context.containers:
@@ -155,7 +155,7 @@ def _good_results(
     node = concurrence.node
     found = set(successes(node))
     results: set[str] = set()
-    for space in (_unfailed_outcomes(concurrence, each) for each in spaces):
+    for space in (_unfailed_outcomes(concurrence, space) for space in spaces):
         if concurrence.rules.find(space, {}, concurrence.rules.all) is not None:
             results.add(node.default_outcome)
         for number, entry in enumerate(concurrence.written):
@@ -274,7 +274,7 @@ def _masked_in_loop(
     if fails(loop, end) or (step is not None and fails(around, step.target)):
         return
     for child in loop.children:
-        declared = {each.name for each in child.outcomes if each.failure}
+        declared = {outcome.name for outcome in child.outcomes if outcome.failure}
         for number, outcome in enumerate(loop.loop_outcomes):
             if outcome in (child.catches, end) or not fails(child, outcome):
                 continue
@@ -301,10 +301,10 @@ def _meant_help(child: Node, outcome: str) -> str:
         if isinstance(child, nodes.Iterator) and child.sugar == "retry":
             causes = child.loop_outcomes if outcome == child.exhausted_outcome else causes
         child = inner
-    own = [each for each in causes if each in outcome_names(child)]
+    own = [cause for cause in causes if cause in outcome_names(child)]
     if not own or notation.is_python(child):
         return ""
-    declared = ", ".join(f"{each}: {{failure: false}}" for each in own)
+    declared = ", ".join(f"{text}: {{failure: false}}" for text in own)
     return (
         "; if the failure of an item does not matter, write"
         f" `outcomes: {{{declared}}}` at `{child.name}`"
@@ -395,12 +395,12 @@ def unhandled_failure(context: Context) -> Iterator[Finding]:
     for path, container in context.containers:
         names = frozenset(child.name for child in container.children)
         for child in container.children:
-            for each in _propagations(path, container, names, child, propagated):
+            for propagation in _propagations(path, container, names, child, propagated):
                 if not isinstance(child, Leaf):
-                    propagated.setdefault((each.path, each.outcome), each)
-                if starts_failure(child, each.outcome) and not _is_limit(each):
-                    masking = each.masking or each
-                    maskings.setdefault((masking.path, masking.outcome), []).append(each)
+                    propagated.setdefault((propagation.path, propagation.outcome), propagation)
+                if starts_failure(child, propagation.outcome) and not _is_limit(propagation):
+                    masking = propagation.masking or propagation
+                    maskings.setdefault((masking.path, masking.outcome), []).append(propagation)
     for found in maskings.values():
         yield _unhandled_failure(root, found)
 
@@ -469,7 +469,7 @@ def _unhandled_failure(root: StateMachine, found: list[_Propagation]) -> Finding
     while step is not None and len(witness) < 2 * MOST_STEPS:
         witness += [entered(step.node.name, step.path), ended(step.outcome)]
         end, step = step.target, step.then
-    others = [each.node.name for each in found[1:]]
+    others = [propagation.node.name for propagation in found[1:]]
     also = f"; failures of {listed(others)} are hidden too" if others else ""
     return Finding(
         span=masking.span,
@@ -478,7 +478,7 @@ def _unhandled_failure(root: StateMachine, found: list[_Propagation]) -> Finding
         arguments=(
             own_name(masking.node, masking.span),
             masking.outcome,
-            *sorted({each.node.name for each in found}),
+            *sorted({propagation.node.name for propagation in found}),
         ),
         help=_unmasked(root, masking),
         related=(

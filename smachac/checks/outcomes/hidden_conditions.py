@@ -48,7 +48,7 @@ def hidden_conditions(path: str, node: Node) -> Iterator[Finding]:
         found = _range(conditions[name].text) if name in conditions else None
         if found is None:
             continue
-        first = next((each for each in known if each[1].covers(found)), None)
+        first = next((pair for pair in known if pair[1].covers(found)), None)
         if first is not None and name != default:
             yield _hidden(path, node, held.value.span, (first[0], name), found.covers(first[1]))
         if found.exact:
@@ -84,14 +84,16 @@ def _range(text: str) -> _Range | None:
     body, names = found
     parts = body.values if isinstance(body, ast.BoolOp) and isinstance(body.op, ast.And) else [body]
     ranges = [_compared(part, names) for part in parts]
-    known = [each for some in ranges for each in some]
+    known = [range_ for some in ranges for range_ in some]
     if not known:
         return None
-    exact = all(ranges) and len({each.key for each in known}) == 1
+    exact = all(ranges) and len({range_.key for range_ in known}) == 1
     key = known[0].key
-    least, least_open = max((each.least, not each.least_closed) for each in known
-                            if each.key == key)  # fmt: skip
-    most, most_open = min((each.most, each.most_closed) for each in known if each.key == key)
+    least, least_open = max((range_.least, not range_.least_closed) for range_ in known
+                            if range_.key == key)  # fmt: skip
+    most, most_open = min(
+        (range_.most, range_.most_closed) for range_ in known if range_.key == key
+    )
     return _Range(key, least, not least_open, most, most_open, exact)
 
 

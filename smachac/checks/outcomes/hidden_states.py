@@ -49,7 +49,7 @@ def hidden_groups(context: Context) -> Iterator[Hidden | Finding]:
             missed = missed_states(context)
         before = _before(whole, frozenset(child.name for child in hidden))
         first = _first_hidden(container, hidden, before, seen)
-        previous = {each.name: one for one, each in pairwise(container.children)}
+        previous = {state.name: one for one, state in pairwise(container.children)}
         order = {child.name: at for at, child in enumerate(hidden)}
         groups = 0
         for child in hidden:
@@ -107,8 +107,8 @@ def _led_past(
     if isinstance(container, Sequence) or before is None or before.name not in seen:
         return None
     after = {step.target for step in group[0].transitions if step.target in seen}
-    good = {step.target for each in group for step in each.transitions
-            if step.target in seen and not fails(each, step.outcome)
+    good = {step.target for state in group for step in state.transitions
+            if step.target in seen and not fails(state, step.outcome)
             and step.outcome != PREEMPTED}  # fmt: skip
     steps = [step for step in before.transitions if step.origin == "written"]
     found = [step for step in steps if step.target in after | good

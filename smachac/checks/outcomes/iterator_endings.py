@@ -42,10 +42,14 @@ def meant_ending(container: nodes.Iterator) -> MeantEnding | None:
         return None
     ways = {result for _, _, result in endings(container)}
     (name, *_) = [result for _, _, result in endings(container)]
-    added = [each for each in container.outcomes if each.name == name]
+    added = [outcome for outcome in container.outcomes if outcome.name == name]
     handled = {step.outcome for step in container.transitions}
     if not added or added[0].span != container.exhausted_span or name in handled:
         return None
     ways |= {*stopped_endings(container).values(), PREEMPTED, container.catches}
-    left = [each for each in container.outcomes if each.name not in ways and each.name in handled]
+    left = [
+        outcome
+        for outcome in container.outcomes
+        if outcome.name not in ways and outcome.name in handled
+    ]
     return MeantEnding(container, added[0], left[0]) if len(left) == 1 else None

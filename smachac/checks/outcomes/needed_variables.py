@@ -93,7 +93,7 @@ def _finding(
     name, names = child.name, never[child.name][outcome.text]
     lacking = f"`{names[0]}` has no value" if len(names) == 1 else f"{listed(names)} have no value"
     variables = types[child.type].variables
-    added = [f"`{each}: {placeholder(variables[each].type)}`" for each in names]
+    added = [f"`{name}: {placeholder(variables[name].type)}`" for name in names]
     return Finding(
         span=outcome.span,
         message=f"`{name}` never ends with `{outcome.text}`: {lacking}",

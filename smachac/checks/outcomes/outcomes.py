@@ -107,7 +107,7 @@ def _undeclared_results(path: str, container: Concurrence) -> Iterator[Finding]:
     inverted = inverted_rules(container)
     if inverted:
         yield _inverted(path, container, inverted)
-    reported = {each.rule.outcome for each in inverted}
+    reported = {other.rule.outcome for other in inverted}
     for source, name, span in results:
         if name not in declared and name not in reported:
             meant = guess(name)
@@ -230,7 +230,7 @@ def _unhandled_outcomes(path: str, container: Linear, lacking: Unhandled) -> Ite
         if not left:
             continue
         targets = _targets(container, child, left, free, steps)
-        if len(left) == 1 or any(_field_that_adds(child, each.name) for each in left):
+        if len(left) == 1 or any(_field_that_adds(child, outcome.name) for outcome in left):
             for outcome in left:
                 yield _unhandled(path, container, child, outcome, targets[outcome.name])
         else:
@@ -281,7 +281,7 @@ def _targets(
     states of the container to which nothing leads yet, in order; those that are used are
     removed."""
     found: dict[str, str] = {}
-    rest = [each.name for each in left]
+    rest = [outcome.name for outcome in left]
     sure, failures = successes(child), failures_of(child)
     good = [name for name in rest
             if name != PREEMPTED and (name in sure or name not in failures)]  # fmt: skip
@@ -399,7 +399,7 @@ def _field_that_adds(node: Node, outcome: str) -> str:
 def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, target: str) -> Finding:
     """SM104 for an outcome without a transition."""
     held = child.variables if isinstance(child, Leaf) else ()
-    default = next((each for each in held if each.name == "default_outcome"), None)
+    default = next((variable for variable in held if variable.name == "default_outcome"), None)
     meant = meant_default(child) if isinstance(child, Leaf) else None
     if default is not None and meant is not None and default.value.data == outcome.name:
         return Finding(

@@ -76,14 +76,14 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: lost}
     """
-    for each in hidden_groups(context):
-        if isinstance(each, Finding):
-            yield each
+    for item in hidden_groups(context):
+        if isinstance(item, Finding):
+            yield item
             continue
-        path, container, group = each.path, each.container, each.group
-        child, way_out = group[0], each.way_out
-        if each.past is not None:
-            yield _passed(path, container, group, each.past)
+        path, container, group = item.path, item.container, item.group
+        child, way_out = group[0], item.way_out
+        if item.past is not None:
+            yield _passed(path, container, group, item.past)
             continue
         yield Finding(
             span=child.span,
@@ -102,7 +102,7 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
 
 def _unreached(container: Linear, group: list[Node]) -> str:
     return (
-        f"{both(each.name for each in group)} cannot be reached from `{container.initial}`, the"
+        f"{both(state.name for state in group)} cannot be reached from `{container.initial}`, the"
         f" initial state of `{container.name}`"
     )
 
@@ -119,7 +119,7 @@ def _out_places(container: Linear, before: Node, step: Transition) -> tuple[Rela
 
 def _passed(path: str, container: Linear, group: list[Node], past: LedPast) -> Finding:
     """SM201 for states past which the state before them leads, or another one."""
-    child, names = group[0], both(each.name for each in group)
+    child, names = group[0], both(state.name for state in group)
     before, step = past.child, past.step
     several = len(group) > 1
     return Finding(
@@ -146,7 +146,7 @@ def _why_unreachable(container: Linear, group: list[Node]) -> str:
             f"give the state before it the outcome `{container.connector_outcome}` without a"
             " transition: a sequence continues with that outcome"
         )
-    names = both(each.name for each in group)
+    names = both(state.name for state in group)
     return f"add a transition to `{group[0].name}`, or remove {names}"
 
 
@@ -189,7 +189,7 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
               transitions: {done: picked, slipped: lost}
     """
     yield from context.at_states(hidden_conditions)
-    types = {name: each for name, each in context.machine.state_types.items() if each.needs}
+    types = {name: type_ for name, type_ in context.machine.state_types.items() if type_.needs}
     for path, container in context.containers if types else ():
         yield from outcomes_without_variable(path, container, types)
     linear = iter(context.absorbed)

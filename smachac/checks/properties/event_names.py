@@ -63,9 +63,9 @@ def name_fault(fault: NameFault, context: Context) -> Finding:
 def _written(context: Context) -> frozenset[str]:
     """The names of the states of the script."""
     return frozenset(
-        each.plain.rpartition("/")[2]
-        for each in walk_script(context.machine.root)
-        if not each.added
+        path.plain.rpartition("/")[2]
+        for path in walk_script(context.machine.root)
+        if not path.added
     )
 
 

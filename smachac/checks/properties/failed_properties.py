@@ -34,12 +34,12 @@ def failures(context: Context) -> Iterator[Failure]:
 
     nodes = dict(context.states)
     open_ends = _open_ends(context) if context.judgements else frozenset()
-    for number, each in enumerate(context.judgements, 1):
-        example = each.counterexample
+    for number, judgement in enumerate(context.judgements, 1):
+        example = judgement.counterexample
         if example is not None and not _is_open(example, open_ends):
             shown = replay(context.machine, example.visits, example.again)
-            turn = turn_of(each.property.form, shown, len(example.visits), nodes)
-            yield Failure(number, each.property, example, shown, turn)
+            turn = turn_of(judgement.property.form, shown, len(example.visits), nodes)
+            yield Failure(number, judgement.property, example, shown, turn)
 
 
 def _open_ends(context: Context) -> frozenset[tuple[str, str]]:
@@ -50,7 +50,7 @@ def _open_ends(context: Context) -> frozenset[tuple[str, str]]:
         names, exits = children_names(container), frozenset(outcome_names(container))
         for child in container.children:
             ends = [step.outcome for step in strays([child], names, exits)]
-            ends += [each.name for each in unhandled(child)]
+            ends += [outcome.name for outcome in unhandled(child)]
             if unknown_outcomes(child):  # SM102: a transition of these is probably meant
                 handled = {step.outcome for step in child.transitions if step.origin == "written"}
                 ends += [name for name in outcome_names(child) if name not in handled]
@@ -71,6 +71,6 @@ def _is_open(example: Counterexample, open_ends: frozenset[tuple[str, str]]) -> 
 
 def missed_states(context: Context) -> set[str]:
     """The states, by path, to which a transition must lead because of a property (SM701)."""
-    turns = [each.turn for each in failures(context)] if context.judgements else []
+    turns = [failure.turn for failure in failures(context)] if context.judgements else []
     missed = {id(node) for turn in turns if turn is not None for node in turn.missed}
     return {path for path, node in context.states if id(node) in missed} if missed else set()

@@ -50,7 +50,7 @@ LONGEST_SCENARIO = 200
 
 def _with(context: Context, verdict: str) -> Iterator[Judgement]:
     """The properties with a verdict."""
-    return (each for each in context.judgements if each.verdict == verdict)
+    return (judgement for judgement in context.judgements if judgement.verdict == verdict)
 
 
 @rule("SM701", "property-fails", Severity.ERROR)
@@ -182,7 +182,7 @@ def _shown(context: Context, example: Counterexample) -> tuple[Visit, ...]:
     an outcome of their state. A timer is kept where its state has states inside, of which some are
     visited after it, and where the property is about the end of the state inside.
     """
-    added = {each.full for each in walk_script(context.machine.root) if each.added}
+    added = {path.full for path in walk_script(context.machine.root) if path.added}
     containers = dict(context.containers) if added else {}
     shown: list[Visit] = []
     skipped = ""  # the state that a timer ended, until its own visit
@@ -323,17 +323,17 @@ def property_vacuous(context: Context) -> Iterator[Finding]:
     unreachable = _unreachable(context) if vacuous else ()
     dead = {path for path, node in context.containers if vacuous
             and isinstance(node, Concurrence) and has_dead_rule(node)}  # fmt: skip
-    for each in vacuous:
-        if any(f"{state}/".startswith(unreachable) or state in dead for state in each.states):
+    for judgement in vacuous:
+        if any(f"{state}/".startswith(unreachable) or state in dead for state in judgement.states):
             continue
-        if _has_lost_rules(context, each):
+        if _has_lost_rules(context, judgement):
             continue  # SM203
         yield Finding(
-            span=each.property.span,
-            message=f"{_named(each.property)} checks nothing: no path leads to"
-            f" {_premise(each.property)}",
-            arguments=(each.property.name, in_words(each.property.form)),
-            help=_missing_event(each.property),
+            span=judgement.property.span,
+            message=f"{_named(judgement.property)} checks nothing: no path leads to"
+            f" {_premise(judgement.property)}",
+            arguments=(judgement.property.name, in_words(judgement.property.form)),
+            help=_missing_event(judgement.property),
         )
 
 
@@ -349,7 +349,7 @@ def _has_lost_rules(context: Context, given: Judgement) -> bool:
         any(
             isinstance(node, Concurrence)
             and name_in_script(node) == atom.name.rpartition("/")[2]
-            and atom.outcome not in {node.default_outcome, *(each.outcome for each in node.rules)}
+            and atom.outcome not in {node.default_outcome, *(other.outcome for other in node.rules)}
             for node in named
         )
         for atom in events
@@ -424,7 +424,7 @@ def unknown_event(context: Context) -> Iterator[Finding]:
           - LIFT: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
     alike: dict[tuple[str, ...], list[NameFault]] = {}
-    for fault in (fault for each in _with(context, "unclear") for fault in each.faults):
+    for fault in (fault for judgement in _with(context, "unclear") for fault in judgement.faults):
         which = fault.kind, fault.atom.subject, fault.atom.name, fault.atom.outcome or ""
         alike.setdefault(which, []).append(fault)
     for first, *others in alike.values():
@@ -479,11 +479,11 @@ def property_undecided(context: Context) -> Iterator[Finding]:
                 - C: {template: ScriptedState, outcomes: [done, slip], retry: {on: [slip], max: 3}}
                 - D: {template: ScriptedState, outcomes: [done, slip], retry: {on: [slip], max: 3}}
     """
-    for each in _with(context, "undecided"):
+    for judgement in _with(context, "undecided"):
         yield Finding(
-            span=each.property.span,
-            message=f"{_named(each.property)} cannot be checked: the branches of this script can"
-            " interleave in too many ways",
-            arguments=(each.property.name, in_words(each.property.form)),
+            span=judgement.property.span,
+            message=f"{_named(judgement.property)} cannot be checked: the branches of this script"
+            " can interleave in too many ways",
+            arguments=(judgement.property.name, in_words(judgement.property.form)),
             help="use fewer or shorter branches, or state it for a smaller part of the task",
         )

@@ -57,7 +57,7 @@ def turn_of(form: Form, replayed: Replay, visits: int, nodes: Mapping[str, Node]
         if missed is not None:
             return missed
     if isinstance(form, AtMost | AlwaysEnds):
-        steps = [each for each in steps if fails(nodes[each.path], each.step.outcome)] or steps
+        steps = [step for step in steps if fails(nodes[step.path], step.step.outcome)] or steps
     return Turn(nodes[steps[-1].path], steps[-1].step) if steps else None
 
 
@@ -93,13 +93,13 @@ def _from_last(events: Atoms, steps: list[_Taken]) -> list[_Taken]:
 
     def follows(taken: _Taken) -> bool:
         return any(
-            each.subject == "path"
-            and f"/{taken.path}".endswith(f"/{each.name}")
-            and each.outcome in (None, taken.step.outcome)
-            for each in events
+            event.subject == "path"
+            and f"/{taken.path}".endswith(f"/{event.name}")
+            and event.outcome in (None, taken.step.outcome)
+            for event in events
         )
 
-    before = len([*takewhile(lambda each: not follows(each), reversed(steps))])
+    before = len([*takewhile(lambda step: not follows(step), reversed(steps))])
     return steps[len(steps) - before - 1 :] if before < len(steps) else []
 
 
@@ -116,7 +116,7 @@ def _first_miss(answer: Atoms, steps: list[_Taken], nodes: Mapping[str, Node]) -
             past = _past(around, states, steps[at:], nodes) if unled else None
             if past is not None:
                 return Turn(nodes[past.path], past.step, states, unled=True)
-            others = tuple(each for each in states if each is not nodes[path])
+            others = tuple(state for state in states if state is not nodes[path])
             return Turn(nodes[path], step, others or states, unled=unled and others == states)
     return None
 
@@ -132,11 +132,11 @@ def _past(
         return None
     after = {step.target for step in states[0].transitions
              if step.origin == "written" and not fails(states[0], step.outcome)}  # fmt: skip
-    found = [each for each in steps
-             if each.path.rpartition("/")[0] == around and each.step.target in after
-             and not fails(nodes[each.path], each.step.outcome)]  # fmt: skip
-    before = [one for one, each in pairwise(container.children) if each is states[0]]
-    near = [each for each in found if nodes[each.path] in before]
+    found = [step for step in steps
+             if step.path.rpartition("/")[0] == around and step.step.target in after
+             and not fails(nodes[step.path], step.step.outcome)]  # fmt: skip
+    before = [one for one, state in pairwise(container.children) if state is states[0]]
+    near = [taken for taken in found if nodes[taken.path] in before]
     return next(iter([*near, *reversed(found)]), None)
 
 
@@ -154,7 +154,7 @@ def _required(container: Node, answer: Atoms) -> _Required:
     """The states of `answer`, or those around them; only those to which no transition leads, if
     there are some."""
     children = () if isinstance(container, Leaf) else container.children
-    names = [each.name for each in answer if each.subject == "path" and each.outcome is None]
+    names = [atom.name for atom in answer if atom.subject == "path" and atom.outcome is None]
     beside = {child.name: child for child in children}
     inside: dict[str, Node] = {}
     for child in children:
@@ -184,15 +184,15 @@ def _ends(container: Node, children: Sequence[Node], answer: Atoms) -> set[str] 
     """The names in a container at which an answer with an outcome may come: its states and its own
     outcomes. None if an answer may come elsewhere."""
     found: set[str] = set()
-    for each in answer:
-        if each.subject != "path":
+    for atom in answer:
+        if atom.subject != "path":
             return None
-        if each.outcome is None:
+        if atom.outcome is None:
             continue
-        if each.name == container.name:
-            found.add(each.outcome)
-        elif any(each.name == child.name for child in children):
-            found.add(each.name)
+        if atom.name == container.name:
+            found.add(atom.outcome)
+        elif any(atom.name == child.name for child in children):
+            found.add(atom.name)
         else:
             return None
     return found

@@ -80,7 +80,7 @@ def body_loaded_twice(context: Context) -> Iterator[Finding]:
         if visits > MOST_VISITS:
             return
         if found.states:
-            nodes = [context.routes.nodes[each] for each in found.states]
+            nodes = [context.routes.nodes[state] for state in found.states]
             leaf = context.routes.nodes[path]
             names = listed([node.name for node in nodes])
             yield Finding(
@@ -130,8 +130,8 @@ def _loaded_before(context: Context, loading: Mapping[str, str], path: str) -> _
         before = list(graph.pred[event])
         if not before:
             return _Loaded((), len(seen))
-        for each in before:
-            if each not in seen:
-                seen.add(each)
-                todo.append(each)
+        for item in before:
+            if item not in seen:
+                seen.add(item)
+                todo.append(item)
     return _Loaded(tuple(found), len(seen))

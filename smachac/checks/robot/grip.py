@@ -132,7 +132,7 @@ class _Closed(NamedTuple):
 def _closed_finding(context: Context, leaf: Leaf, path: str, found: _Closed) -> Finding:
     """The finding on a state that closes a closed gripper at a body."""
     own, *names = names_apart((path, *found.closed, *found.moved))
-    places = [context.routes.nodes[each].span for each in (found.closed[0], found.moved[0])]
+    places = [context.routes.nodes[text].span for text in (found.closed[0], found.moved[0])]
     held = variable_of(leaf, "grip")
     releases = held is not None and _is_to_release(leaf.name)
     help = (
@@ -203,7 +203,7 @@ def _opened_after(context: Context, leaves: Mapping[str, Leaf], path: str) -> bo
                 return True
             if grip == "close":
                 continue
-        new = [each for each in succ[event] if each not in seen]
+        new = [item for item in succ[event] if item not in seen]
         seen.update(new)
         todo += new
     return False
@@ -240,10 +240,10 @@ def _closed_before(context: Context, leaves: Mapping[str, Leaf], path: str) -> _
         before = list(graph.pred[event])
         if not before:
             return _Closed((), (), len(seen))
-        for each in before:
-            if (each, comes) not in seen:
-                seen.add((each, comes))
-                todo.append((each, comes))
+        for item in before:
+            if (item, comes) not in seen:
+                seen.add((item, comes))
+                todo.append((item, comes))
     return _Closed(tuple(closed), tuple(moved) if closed else (), len(seen), checked)
 
 

@@ -45,7 +45,7 @@ def role_of(cell: Cell) -> str:
     if not isinstance(cell.node, Leaf):
         return ""
     held = cell.node.inputs if cell.role == "input" else cell.node.variables
-    return next((each.role for each in held if each.name == cell.key), "")
+    return next((item.role for item in held if item.name == cell.key), "")
 
 
 def names_in(data: Data) -> Iterator[str]:

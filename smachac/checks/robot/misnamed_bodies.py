@@ -29,7 +29,7 @@ def misnamed_body(
     if found is None:
         return None
     path, leaf, body = found
-    held = next((each for each in leaf.variables if each.name == "body"), None)
+    held = next((variable for variable in leaf.variables if variable.name == "body"), None)
     given = held is not None and held.value.data is not None
     span = held.value.span if held is not None and given else leaf.span
     related: list[Related] = []
@@ -53,17 +53,17 @@ def _unused_loader(context: Context, name: str) -> tuple[str, Leaf, str] | None:
     """The state that loads a body whose name nothing uses: the one with a name that is the unknown
     name, else the only one."""
     used = {
-        each
+        name
         for flow in context.types.constants
         if role_of(flow.cell) in ("body", "frame")
-        for each in names_in(flow.value)
+        for name in names_in(flow.value)
     }
     found = []
     for path, body in (context.bodies_loaded or {}).items():
         leaf = context.routes.nodes.get(path)
         if body not in used and isinstance(leaf, Leaf) and leaf.built_in:
             found.append((path, leaf, body))
-    alike = [each for each in found if each[1].name.casefold() == name.casefold()]
+    alike = [row for row in found if row[1].name.casefold() == name.casefold()]
     for some in (alike, found):
         if len(some) == 1:
             return some[0]

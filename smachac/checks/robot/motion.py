@@ -137,7 +137,7 @@ def wrong_frame(context: Context) -> Iterator[Finding]:
                         framed[Read(path, container, outer, child.name)] = child, key
     for read, sources in last_writers(framed):
         child, key = framed[read]
-        writers = {each.name: each for each in read.container.children}
+        writers = {child.name: child for child in read.container.children}
         for source in sources:
             is_start = source == START
             given = _preset(read) if is_start else _output(writers[str(source)], read.key)
@@ -170,9 +170,9 @@ def _preset(read: Read) -> tuple[str, Span] | None:
 
 def _output(node: Node, key: str) -> tuple[str, Span] | None:
     """The frame of the poses that a state writes to a key of its container, and its place."""
-    for each in outputs_to(node, key) if isinstance(node, Leaf) else ():
-        if each.frame:
-            return each.frame, node.span
+    for output in outputs_to(node, key) if isinstance(node, Leaf) else ():
+        if output.frame:
+            return output.frame, node.span
     return None
 
 

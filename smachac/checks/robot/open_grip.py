@@ -162,10 +162,10 @@ def _before(context: Context, leaves: Mapping[str, Leaf], path: str, check: str)
             moved = moved or any(claim.startswith("arm") for claim in leaf.claims)
         before = list(graph.pred[event])
         started = started or not before
-        for each in before:
-            if each not in seen:
-                seen.add(each)
-                todo.append(each)
+        for item in before:
+            if item not in seen:
+                seen.add(item)
+                todo.append(item)
     return _Before(True, tuple(opened), started, tuple(others), moved, len(seen), reached)
 
 
@@ -208,7 +208,7 @@ def _changes_beside(context: Context, leaves: Mapping[str, Leaf], path: str, che
     gripper."""
     parts = path.split("/")
     around = ["/".join(parts[:end]) for end in range(1, len(parts))]
-    beside = [each for each in around if isinstance(context.routes.nodes.get(each), Concurrence)]
+    beside = [text for text in around if isinstance(context.routes.nodes.get(text), Concurrence)]
     if not beside:
         return False
     return any(

@@ -179,7 +179,7 @@ def _in_degrees(flow: TypeFlow, robot: Robot, faults: list[tuple[int, Joint, Dat
     """SM502 for a list in which an angle is larger than a full turn in radians."""
     assert isinstance(flow.value, tuple)
     number, joint, angle = faults[0]
-    names = ", ".join(f"joint {each} is {given}" for each, _, given in faults[:MOST_LISTED])
+    names = ", ".join(f"joint {number} is {given}" for number, _, given in faults[:MOST_LISTED])
     message = f"`{flow.origin.cell.key}` is outside the limits of the joints, in rad: {names}"
     if len(faults) == len(flow.value):
         message = f"`{flow.origin.cell.key}` seems to be in degrees: all {len(faults)} angles are"
@@ -195,7 +195,7 @@ def _in_degrees(flow: TypeFlow, robot: Robot, faults: list[tuple[int, Joint, Dat
         flow,
         message,
         f"convert the angles from degrees to radians: `[{new}]`",
-        tuple(str(each) for each, _, _ in faults),
+        tuple(str(number) for number, _, _ in faults),
         other_place(joint.span, f"the limits of `{joint.name}`"),
     )
 
@@ -251,7 +251,7 @@ def not_a_rotation(context: Context) -> Iterator[Finding]:
         for rotation, length in known[which]:
             help = "write `[0.0, 0.0, 0.0, 1.0]` for no rotation"
             if length > 0.0 and math.isfinite(length):
-                numbers = [as_float(each) for each in rotation]
+                numbers = [as_float(value) for value in rotation]
                 nearest = ", ".join(f"{number / length:.4f}" for number in numbers)
                 help = f"write the nearest rotation, `[{nearest}]`"
             message = f"the quaternion {list(rotation)} has the length {length:.4g}, not 1"
@@ -261,7 +261,7 @@ def not_a_rotation(context: Context) -> Iterator[Finding]:
 def _wrong_rotations(origin: TypeFlow, wanted: Type) -> Iterator[tuple[tuple[Data, ...], float]]:
     """The quaternions in a literal that is read as a type, if their length is not 1, with it."""
     for rotation in _rotations(origin.value, wanted):
-        numbers = [as_float(each) for each in rotation if is_number(each)]
+        numbers = [as_float(number) for number in rotation if is_number(number)]
         length = math.hypot(*numbers)
         if len(numbers) == 4 and not abs(length * length - 1.0) <= ROTATION_TOLERANCE:  # also NaN
             yield rotation, length
@@ -410,7 +410,7 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
             help += f"{_or_default(context, flow)}; if another program provides `{name}`, add it"
             help += " to `frames: [...]` of the script"
             if simulated:
-                help = f"its frames are {', '.join(f'`{each}`' for each in sorted(known))}"
+                help = f"its frames are {', '.join(f'`{text}`' for text in sorted(known))}"
             message = f"{where} has no frame `{name}`"
             severity = Severity.ERROR if simulated else None
             help = did_you_mean(guess(name)) or help

@@ -88,8 +88,10 @@ def out_of_limits(context: Context) -> Iterator[Finding]:
 
 def _limits(type_: StateType) -> Mapping[tuple[str, str], Limits]:
     """The limits of a state type, by the role and the key of a cell."""
-    variables = ((("variable", each.name), each.limits) for each in type_.variables.values())
-    inputs = ((("input", each.name), each.limits) for each in type_.input_keys)
+    variables = (
+        (("variable", variable.name), variable.limits) for variable in type_.variables.values()
+    )
+    inputs = ((("input", key.name), key.limits) for key in type_.input_keys)
     return {cell: limits for cell, limits in (*variables, *inputs) if limits is not None}
 
 
@@ -165,7 +167,7 @@ def _converted(number: int | float, unit: str, limits: Limits) -> str:
 def in_words(limits: Limits) -> str:
     """Limits as the end of a sentence: "greater than 0"."""
     if limits.choices:
-        return f"one of {', '.join(f'`{each}`' for each in limits.choices)}"
+        return f"one of {', '.join(f'`{choice}`' for choice in limits.choices)}"
     least, most = (f"{bound:g}" for bound in (limits.least, limits.most))
     if limits.most == math.inf:
         return f"greater than {least}" if limits.exclusive else f"{least} or greater"
@@ -333,7 +335,7 @@ def _missing_limbs(
         variable = names.get(leaf.type) if isinstance(leaf, Leaf) else None
         if not isinstance(leaf, Leaf) or variable is None:
             continue
-        given = next((each for each in leaf.variables if each.name == variable.name), None)
+        given = next((other for other in leaf.variables if other.name == variable.name), None)
         value = given.value if given is not None else variable.default
         if value is None or value.data is not None:
             continue
@@ -354,9 +356,9 @@ def _missing_limbs(
 
 def _limb_of(type_: StateType) -> VariableType | None:
     """The variable of a state type that names one limb."""
-    held = (each for each in type_.variables.values() if each.role == "limb")
+    held = (variable for variable in type_.variables.values() if variable.role == "limb")
     several = ("list", "array", "dict")
-    return next((each for each in held if present(each.type).name not in several), None)
+    return next((type_ for type_ in held if present(type_.type).name not in several), None)
 
 
 def _known_things(context: Context) -> Mapping[str, frozenset[str]]:
@@ -366,7 +368,9 @@ def _known_things(context: Context) -> Mapping[str, frozenset[str]]:
     if robot is not None and robot.limb_names and (simulated or len(robot.limb_names) > 1):
         known["limb"] = frozenset(robot.limb_names)
     bodies = context.bodies_loaded if simulated and robot is not None else None
-    scene = any(each.name == "scene" and each.value.data for each in context.machine.variables)
+    scene = any(
+        variable.name == "scene" and variable.value.data for variable in context.machine.variables
+    )
     if bodies is not None and robot is not None and (robot.scene or not scene):
         known["body"] = frozenset(bodies.values()) | robot.added | robot.scene
     if simulated:
@@ -377,7 +381,7 @@ def _known_things(context: Context) -> Mapping[str, frozenset[str]]:
 def _in_scene(context: Context, name: str | None) -> tuple[Related, ...]:
     """The place of a body in the file of the scene."""
     robot = context.machine.robot
-    found = [each for each in (robot.bodies if robot is not None else ()) if each.text == name]
+    found = [body for body in (robot.bodies if robot is not None else ()) if body.text == name]
     return other_place(found[0].span, f"the scene has the body `{name}`") if found else ()
 
 
@@ -450,12 +454,12 @@ def doubtful_unit(context: Context) -> Iterator[Finding]:
     simulated = frozenset(name for name, type_ in types.items() if type_.simulation)
     large: dict[TypeFlow, bool] = {}
     wrong = []
-    for each in context.types.constants:
-        origin = each.origin
+    for constant in context.types.constants:
+        origin = constant.origin
         if origin not in large:
             large[origin] = any(min(FULL_TURN, FARTHEST) < abs(x) for x in numbers(origin.value))
-        if large[origin] and (_degrees(each) or _millimetres(each, simulated)):
-            wrong.append(each)
+        if large[origin] and (_degrees(constant) or _millimetres(constant, simulated)):
+            wrong.append(constant)
     flows: dict[Span, list[TypeFlow]] = {}
     for flow in reaching_flows(wrong):
         flows.setdefault(flow.origin.span, []).append(flow)
@@ -490,12 +494,12 @@ def _doubtful(
     """The finding for a literal that seems to be in another unit; `flows` lead to its readers."""
     flow = flows[0]
     degrees = _degrees(flow)
-    joints = [each for each in flows if robot is not None and moves_arm(each)]
+    joints = [flow for flow in flows if robot is not None and moves_arm(flow)]
     if degrees and joints:
         assert robot is not None
         # A joint without limits may turn several times, but hardly by 90 rad.
-        faults = any(joint_faults(each, robot) for each in joints)
-        degrees = [] if faults else [each for each in degrees if each[1] % 5 == 0]
+        faults = any(joint_faults(joint, robot) for joint in joints)
+        degrees = [] if faults else [degree for degree in degrees if degree[1] % 5 == 0]
         if not degrees:
             return
     effect: str | None = None
@@ -517,20 +521,20 @@ def _doubtful(
 def _metres(data: Data, value: float) -> str:
     """A coordinate in millimetres in metres; the whole point if all its numbers are so large."""
     point = data[0] if isinstance(data, tuple) and data and isinstance(data[0], tuple) else data
-    every = [each for each in point if is_number(each)] if isinstance(point, tuple) else []
-    if len(every) != 3 or not all(each == 0 or 1 <= abs(each) < math.inf for each in every):
+    every = [number for number in point if is_number(number)] if isinstance(point, tuple) else []
+    if len(every) != 3 or not all(number == 0 or 1 <= abs(number) < math.inf for number in every):
         return f"{value / 1000:g}"
-    return f"the point as `[{', '.join(f'{each / 1000:g}' for each in every)}]`"
+    return f"the point as `[{', '.join(f'{number / 1000:g}' for number in every)}]`"
 
 
 def _radians(data: Data, angle: float) -> str:
     """An angle in degrees in radians; a list of numbers that contains it as a whole."""
     if not isinstance(data, tuple):
         return f"`{math.radians(angle):.4f}`"
-    angles = [each for each in data if isinstance(each, int | float)]
+    angles = [number for number in data if isinstance(number, int | float)]
     if angle not in angles or len(angles) < len(data) or len(data) > 12:
         return f"`{math.radians(angle):.4f}`"
-    return f"the list in radians: `[{', '.join(f'{math.radians(each):.4g}' for each in angles)}]`"
+    return f"the list in radians: `[{', '.join(f'{math.radians(angle):.4g}' for angle in angles)}]`"
 
 
 def _degrees(flow: TypeFlow) -> list[tuple[tuple[int | str, ...], int | float]]:
@@ -550,9 +554,9 @@ def _large_angles(
             yield from _large_angles(part, type_, (*steps, step))
     elif unit_of(inner) == "rad":
         joints = wanted.name in ("list", "array", "dict")
-        for each in dict.fromkeys(numbers(data)):
-            if FULL_TURN < abs(each) < math.inf and (joints or float(each).is_integer()):
-                yield (*steps, *steps_to_number(data, each)), each
+        for fromkey in dict.fromkeys(numbers(data)):
+            if FULL_TURN < abs(fromkey) < math.inf and (joints or float(fromkey).is_integer()):
+                yield (*steps, *steps_to_number(data, fromkey)), fromkey
 
 
 def _in_other_unit(flow: TypeFlow) -> bool:
@@ -575,7 +579,7 @@ def _millimetres(flow: TypeFlow, simulated: frozenset[str]) -> list[int | float]
     point = value[0] if isinstance(value, tuple) and len(value) == 2 else value
     if not isinstance(point, tuple):
         return []
-    large = [each for each in numbers(point) if FARTHEST < abs(each) < math.inf]
+    large = [number for number in numbers(point) if FARTHEST < abs(number) < math.inf]
     if not large:
         return []
     parts = [claim.partition(".")[0] for claim in node.claims]

@@ -180,14 +180,14 @@ def _solved(wanted: Iterable[Reach], name: str, folder: Path) -> Report:
     solvers: dict[str, Kinematics] = {}
     known: dict[tuple[str, Pose], bool] = {}
     found: Report = []
-    for each in wanted:
-        named = [arm for arm in arms if arm[1].name == each.limb]
+    for reach in wanted:
+        named = [arm for arm in arms if arm[1].name == reach.limb]
         part, limb = (named or arms)[0]
-        if not named and (each.limb is not None or len(arms) > 1):
+        if not named and (reach.limb is not None or len(arms) > 1):
             continue
         try:
-            pose = as_pose(grasp_pose(each.pose, limb.grasp) if each.grasp else each.pose)
-            pose = shifted(pose, IDENTITY if each.offset is None else as_pose(each.offset))
+            pose = as_pose(grasp_pose(reach.pose, limb.grasp) if reach.grasp else reach.pose)
+            pose = shifted(pose, IDENTITY if reach.offset is None else as_pose(reach.offset))
         except ValueError:
             continue
         key = limb.name, pose
@@ -198,7 +198,7 @@ def _solved(wanted: Iterable[Reach], name: str, folder: Path) -> Report:
             known[key] = solvers[part.name].solve(limb, goal) is not None
         if not known[key]:
             point = ", ".join(f"{number:.3f}" for number in pose[0])
-            found.append(out_of_reach(each.flow, f"({point})"))
+            found.append(out_of_reach(reach.flow, f"({point})"))
     return found
 
 

@@ -25,7 +25,7 @@ def message_calls(code: Expression, found: Definitions) -> Iterator[tuple[ast.Ca
         name = ast.unparse(node.func) if isinstance(node, ast.Call) else ""
         definitions = found.get(("msg", name), ())
         if isinstance(node, ast.Call) and definitions:
-            yield node, [each.part("message") for each in definitions]
+            yield node, [definition.part("message") for definition in definitions]
         else:
             todo += ast.iter_child_nodes(node)
 
@@ -51,7 +51,7 @@ def _tree(text: str) -> ast.AST:
 
 def _arguments(call: ast.Call, messages: Sequence[Message], found: Definitions, span: Span) -> Data:
     """The arguments by the names of the fields; code for a call with other arguments."""
-    names = [each.arg for each in call.keywords]
+    names = [keyword.arg for keyword in call.keywords]
     if call.args or None in names:
         return Expression(text=ast.unparse(call), span=span)
     entries = []
@@ -73,11 +73,11 @@ def _literal(node: ast.expr, types: Sequence[FieldType], found: Definitions, spa
             return -value
         case ast.List(elts=items) | ast.Tuple(elts=items):
             if not any(isinstance(item, ast.Starred) for item in items):
-                inner = [FieldType(name=each.name) for each in types]
+                inner = [FieldType(name=type_.name) for type_ in types]
                 return tuple(_literal(item, inner, found, span) for item in items)
         case ast.Call():
             messages = nested_messages(types, found)
             name = ast.unparse(node.func).rpartition(".")[2]
-            if messages and all(each.name.rpartition("/")[2] == name for each in messages):
+            if messages and all(message.name.rpartition("/")[2] == name for message in messages):
                 return _arguments(node, messages, found, span)
     return Expression(text=ast.unparse(node), span=span)

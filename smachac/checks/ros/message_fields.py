@@ -164,7 +164,7 @@ def unknown_field(context: Context) -> Iterator[Finding]:
         for kind, definitions in leaf_definitions(node, found):
             for held in node.variables:
                 if held.role in PARTS[kind]:
-                    messages = [each.part(held.role) for each in definitions]
+                    messages = [definition.part(held.role) for definition in definitions]
                     other = _other_type(context, node, kind, held.role)
                     yield from _faults(context, path, node, held, messages, other)
                     yield from _wrong_values(path, node, held, messages, found, other)
@@ -262,7 +262,7 @@ def _wrong_arguments(
     call = _class_call(code.text, messages) if isinstance(code, Expression) else None
     if call is not None:
         faults = call_faults(call, messages, found, value.span)
-        known = [each for each in faults if each.wanted is not None or len(each.names) > 1]
+        known = [fault for fault in faults if fault.wanted is not None or len(fault.names) > 1]
         yield from _argument_findings(path, leaf, value.span, known)
 
 
@@ -291,7 +291,7 @@ def _untyped_mappings(context: Context, path: str, leaf: Leaf) -> Iterator[Findi
         return
     for name in sorted(names):
         cell = context.types.cells.get((path, name))
-        flows = [each for alike in cell.flows.values() for each in alike] if cell else []
+        flows = [flow for alike in cell.flows.values() for flow in alike] if cell else []
         for flow in flows:
             if flow.how == "value" and isinstance(flow.value, Struct):
                 add = listing([leaf], "input_keys", TYPE_KEY)
@@ -322,9 +322,9 @@ def _wrong_messages(
     typed = context.types.cells.get((path, TYPE_KEY))
     if not names or typed is None or variable(leaf, "action") in NO_MESSAGE:
         return
-    given = [each for alike in typed.flows.values() for each in alike]
-    texts = {each.value for each in given if each.how == "value" and isinstance(each.value, str)}
-    if len(texts) != 1 or any(each.how != "value" for each in given):
+    given = [flow for alike in typed.flows.values() for flow in alike]
+    texts = {flow.value for flow in given if flow.how == "value" and isinstance(flow.value, str)}
+    if len(texts) != 1 or any(flow.how != "value" for flow in given):
         return
     type_ = texts.pop()
     absent = missing.get(("msg", type_))
@@ -332,7 +332,7 @@ def _wrong_messages(
         package, *_, name = re.split(r"[/.]", type_)
         meant = meant_type(name, "msg", absent)
         yield at(given[0], no_type(package, name, "msg"), meant, (package, name))
-    messages = [each.part("message") for each in found.get(("msg", type_), ())]
+    messages = [definition.part("message") for definition in found.get(("msg", type_), ())]
     effect = f"`{leaf.name}` ends with `aborted`: the message is never used"
     for name in sorted(names) if messages else ():
         yield from _mapping_faults(context, path, name, messages, found, effect)
@@ -345,8 +345,8 @@ def _wrong_slots(
     fields the message of this field does not have, or whose values do not fit."""
     data = held.value.data
     for name in data if isinstance(data, tuple) else ():
-        fields = [each.field(name) for each in messages] if isinstance(name, str) else []
-        types = [each.type for each in fields if each is not None and not each.type.array]
+        fields = [message.field(name) for message in messages] if isinstance(name, str) else []
+        types = [field.type for field in fields if field is not None and not field.type.array]
         inner = nested_messages(types, found) if len(types) == len(messages) else []
         if isinstance(name, str) and inner:
             effect = f"the {held.role} cannot be made of the value: it is never sent"
@@ -365,10 +365,10 @@ def _mapping_faults(
     for flow, item, value in (*_flows(context, path, name), *_items(context, path, name)):
         if not isinstance(value, Struct):
             continue
-        faults = [list(value_faults(value, each, found)) for each in messages]
+        faults = [list(value_faults(value, message, found)) for message in messages]
         levels = with_levels(value, faults[0] if all(faults) else (), found)
         for (steps, message, wanted, given), level in levels:
-            fields = sorted(each.name for each in message.fields)
+            fields = sorted(field.name for field in message.fields)
             text = f"{described(message)} has no field `{steps[-1]}`"
             help = level or did_you_mean(near_field(steps[-1], fields))
             help = help or _only_missing(value, steps, message)
@@ -403,7 +403,7 @@ def _flows(context: Context, path: str, name: str) -> Iterator[_Literal]:
 def _items(context: Context, path: str, name: str) -> Iterator[_Literal]:
     """The items of the literal lists over which the loop around a state gives it a key."""
     around = path.rpartition("/")[0]
-    loop, node = (context.routes.nodes.get(each) for each in (around, path))
+    loop, node = (context.routes.nodes.get(text) for text in (around, path))
     if not isinstance(loop, nodes.Iterator) or not loop.items_key or node is None:
         return
     if remapping(node)[name] != loop.item_key:
@@ -418,7 +418,7 @@ def _only_missing(data: Data, steps: Sequence[str], message: Message) -> str | N
     for step in steps[:-1]:
         data = dict(data.entries).get(step) if isinstance(data, Struct) else None
     given = [name for name, _ in data.entries] if isinstance(data, Struct) else []
-    fields = [each.name for each in message.fields]
+    fields = [field.name for field in message.fields]
     missing = [name for name in fields if name not in given]
     more = [name for name in given if name not in fields]
     return f"write `{missing[0]}`" if len(missing) == len(more) == 1 else None
@@ -434,20 +434,20 @@ def _wrong_values(
 ) -> Iterator[Finding]:
     """Values that do not fit the fields of a message, or are for fields that it does not have."""
     data, span = held.value.data, held.value.span
-    if isinstance(data, tuple) and all(isinstance(each, str) for each in data):
+    if isinstance(data, tuple) and all(isinstance(value, str) for value in data):
         return  # the names of keys
-    if isinstance(data, tuple) and all(len(data) != len(each.fields) for each in messages):
+    if isinstance(data, tuple) and all(len(data) != len(message.fields) for message in messages):
         first = messages[0]
         counts = f"{len(data)} values, but {described(first)} has {len(first.fields)} fields"
-        form = ", ".join(f"{each.name}: ..." for each in first.fields)
+        form = ", ".join(f"{field.name}: ..." for field in first.fields)
         help = f"write a mapping of the fields: `{{{form}}}`"
         yield field_finding(path, leaf, Word("", span), f"the list has {counts}", help, messages)
         return
-    faults = [list(value_faults(data, each, found)) for each in messages]
+    faults = [list(value_faults(data, message, found)) for message in messages]
     effect = f"the program stops when it makes the state: the {held.role} is never sent"
     order = in_field_order(data, messages[0]) if faults and all(faults) else None
     if order is not None:
-        fields = ", ".join(f"`{each.name}`" for each in messages[0].fields)
+        fields = ", ".join(f"`{field.name}`" for field in messages[0].fields)
         text = f"a list gives the fields in their order ({fields}), but these values do not fit it"
         yield field_finding(path, leaf, Word("", span), text, f"write `{order}`", messages, effect)
         return
@@ -462,7 +462,7 @@ def _wrong_values(
         text = f"the value of `{names[-1]}` does not fit: the field of {described(message)} is"
         place = _value_span(_field_word(names, span).span, span)
         if isinstance(data, tuple) and len(names) == 1:
-            numbers = [number for number, each in enumerate(message.fields) if each.name in names]
+            numbers = [number for number, field in enumerate(message.fields) if field.name in names]
             place = place_of_part(span, numbers)
         word, help = Word(names[-1], place), value_help(value, wanted)
         yield field_finding(path, leaf, word, f"{text} `{wanted}`", help, (message,), effect)
@@ -472,7 +472,9 @@ def _other_type(context: Context, leaf: Leaf, kind: DefinitionKind, role: str) -
     """The end of the help that names the type that has all fields which a state gives; empty if it
     is not known."""
     others = context.machine.other_types
-    named = next((each for each in leaf.variables if DEFINITION_KINDS.get(each.role) == kind), None)
+    named = next(
+        (other for other in leaf.variables if DEFINITION_KINDS.get(other.role) == kind), None
+    )
     if not others or named is None:
         return ""
     fields = given_fields(leaf.variables, role)
@@ -511,7 +513,7 @@ def _faults(
     messages: Sequence[Message],
     other: str,
 ) -> Iterator[Finding]:
-    names = {each.name for message in messages for each in message.fields}
+    names = {field.name for message in messages for field in message.fields}
     inputs = {key.name for key in leaf.inputs}
     remapped = remapped_field(leaf, held, names)
     for use in _uses(held, messages):
@@ -528,9 +530,9 @@ def _faults(
         elif use.key and name in inputs:
             given = present(context.types.inputs[path, name])
             fields = [message.field(name) for message in messages]
-            wanted = [userdata_type(each.type) for each in fields if each is not None]
-            if not any(_can_fit(given, each) for each in wanted):
-                type_ = next(each.type for each in fields if each is not None)
+            wanted = [userdata_type(field.type) for field in fields if field is not None]
+            if not any(_can_fit(given, type_) for type_ in wanted):
+                type_ = next(field.type for field in fields if field is not None)
                 message = f"`{name}` is `{given}`, but the field of {described(messages[0])} is"
                 help = f"remap `{name}` to a key whose values are `{wanted[0]}`"
                 yield field_finding(path, leaf, use.word, f"{message} `{type_}`", help, messages)
@@ -540,7 +542,7 @@ def _can_fit(given: Type, wanted: Type) -> bool:
     """Whether a field can accept a value: a list of numbers can be read as a message, a number of
     seconds as a time or a duration, and a whole number as a truth value."""
     if wanted.name in ("array", "list") and given.name in ("array", "list"):
-        item, wanted_item = (each.args[:1] for each in (given, wanted))
+        item, wanted_item = (type_.args[:1] for type_ in (given, wanted))
         if wanted_item and isinstance(wanted_item[0], Type) and is_time(wanted_item[0].name):
             return not item or not isinstance(item[0], Type) or _can_fit(item[0], wanted_item[0])
     if is_time(wanted.name) and given.name in ("int", "float"):
@@ -556,7 +558,7 @@ def _uses(held: Variable, messages: Sequence[Message]) -> Iterator[_Use]:
     the message."""
     span = held.value.span
     match held.value.data:
-        case tuple() as names if all(isinstance(each, str) for each in names):
+        case tuple() as names if all(isinstance(name, str) for name in names):
             for name in names:
                 yield _Use(word_in(str(name), span), key=True)
         case Expression(text=text):
@@ -568,7 +570,9 @@ def _keywords(text: str, messages: Sequence[Message]) -> Iterator[str]:
     """The names of the arguments in a call of the class of a message."""
     call = _class_call(text, messages)
     if call is not None:
-        yield from (each.arg for each in call.keywords if each.arg not in (None, CHECK_FIELDS))
+        yield from (
+            keyword.arg for keyword in call.keywords if keyword.arg not in (None, CHECK_FIELDS)
+        )
 
 
 def _class_call(text: str, messages: Sequence[Message]) -> ast.Call | None:

@@ -31,9 +31,9 @@ def type_key_meant(container: Node | None) -> str | None:
     if not isinstance(container, Container):
         return None
     held = [
-        each.key
-        for each in container.userdata
-        if isinstance(each.value.data, str) and _TYPE_NAME.fullmatch(each.value.data)
+        preset.key
+        for preset in container.userdata
+        if isinstance(preset.value.data, str) and _TYPE_NAME.fullmatch(preset.value.data)
     ]
     if not held:
         return None
@@ -48,9 +48,9 @@ def remapped_field(leaf: Leaf, held: Variable, names: AbstractSet[str]) -> str |
     listed_names = held.value.data
     if not leaf.remaps or not isinstance(listed_names, tuple):
         return None
-    used = {each for each in listed_names if isinstance(each, str)}
+    used = {name for name in listed_names if isinstance(name, str)}
     known = {key.name for key in (*leaf.inputs, *leaf.outputs)} - (used - names)
-    found = [each.key for each in leaf.remaps if each.key in names and each.key not in known]
+    found = [remap.key for remap in leaf.remaps if remap.key in names and remap.key not in known]
     return found[0] if len(found) == len(used - names) == 1 else None
 
 
@@ -61,8 +61,8 @@ def remapped_fields(leaf: Leaf, found: Definitions) -> set[str]:
     for kind, definitions in leaf_definitions(leaf, found):
         for held in leaf.variables:
             if held.role in PARTS[kind]:
-                parts = [each.part(held.role) for each in definitions]
-                names = {each.name for part in parts for each in part.fields}
+                parts = [definition.part(held.role) for definition in definitions]
+                names = {field.name for part in parts for field in part.fields}
                 field = remapped_field(leaf, held, names)
                 fields.update([field] if field is not None else [])
     return fields

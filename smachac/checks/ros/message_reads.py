@@ -55,16 +55,16 @@ def wrong_comparisons(
     for compared in code.uses.comparisons:
         part, operator, value, span = compared
         content = content_of(part, code, found)
-        lists = [each for each in content if isinstance(each, FieldType) and each.array]
+        lists = [type_ for type_ in content if isinstance(type_, FieldType) and type_.array]
         if lists and len(lists) == len(content) and operator in ORDERS:
             yield _ordered_list(path, leaf, compared, lists[0], here)
             continue
-        fields = [each for each in content if isinstance(each, FieldType) and not each.array]
+        fields = [type_ for type_ in content if isinstance(type_, FieldType) and not type_.array]
         wrong = NUMBERS if isinstance(value, str) else TEXTS
-        if not fields or len(fields) != len(content) or {each.name for each in fields} - {*wrong}:
+        if not fields or len(fields) != len(content) or {field.name for field in fields} - {*wrong}:
             continue
         constants = constants_for(part.name.text, fields[0], owners(part, code, found)[:1])
-        meant = [each for each in constants if each.name == value]
+        meant = [constant for constant in constants if constant.name == value]
         help = f"compare it with a value of the type `{fields[0]}`{an_example(fields[0])}"
         if meant and operator in ("==", "!="):
             help = f"write `{part.text} {operator} {meant[0].value}`: `{value}` is a constant of"
@@ -111,7 +111,11 @@ def code_places(leaf: Leaf, slot: CodeSlot, code: MessageCode) -> tuple[Related,
 def operands_of(slot: CodeSlot, code: MessageCode) -> tuple[Operand, ...]:
     """The parts of arguments that have to be values, with the results of a condition."""
     results = code.results if is_condition(slot) else ()
-    whole = [Operand(each.part, each.span, each.text) for each in results if each.part is not None]
+    whole = [
+        Operand(result.part, result.span, result.text)
+        for result in results
+        if result.part is not None
+    ]
     return (*code.uses.operands, *whole)
 
 
@@ -122,8 +126,8 @@ def wrong_reads(
     for read in field_reads(code, found):
         messages, word = read.messages, read.part.name
         name = word.text
-        known = {each.name for message in messages for each in message.fields}
-        constants = {each.name for message in messages for each in message.constants}
+        known = {field.name for message in messages for field in message.fields}
+        constants = {constant.name for message in messages for constant in message.constants}
         if (
             name.startswith("_")
             or name in METHODS
@@ -144,7 +148,7 @@ def near_field(word: str, names: Sequence[str]) -> str | None:
         guess = by_words(word, names) or guess
     if guess is not None or len(word) < SHORTEST_PART:
         return guess
-    longer = [each for each in names if each.casefold().startswith(word.casefold())]
+    longer = [name for name in names if name.casefold().startswith(word.casefold())]
     return longer[0] if len(longer) == 1 else None
 
 
@@ -155,11 +159,11 @@ def _level_help(read: FieldRead, code: MessageCode, found: Definitions) -> str |
     owner = text[: -len(name.text)]
     whole = _whole(read.part, code.uses.parts)
     rest = whole.text[len(text) :]
-    guess = near_field(name.text, [each.name for each in read.messages[0].fields])
+    guess = near_field(name.text, [field.name for field in read.messages[0].fields])
     if guess is not None and name.text in guess:
         return None
     inner = whole.steps[len(read.part.steps) :][:1]
-    if inner and all(each.field(inner[0] or "") for each in read.messages):
+    if inner and all(message.field(inner[0] or "") for message in read.messages):
         return f"write `{owner}{rest[1:]}`"
     deeper = _deeper(name.text, read.messages, found)
     return f"write `{owner}{deeper}{rest}`" if deeper is not None else None
@@ -167,11 +171,11 @@ def _level_help(read: FieldRead, code: MessageCode, found: Definitions) -> str |
 
 def _whole(part: Part, parts: Sequence[Part]) -> Part:
     """The longest part of an argument that begins with another one, at its place."""
-    longer = [each for each in parts if each.text.startswith(f"{part.text}.")]
-    for each in sorted(longer, key=lambda each: len(each.steps)):
-        name = each.name.span
+    longer = [other for other in parts if other.text.startswith(f"{part.text}.")]
+    for other in sorted(longer, key=lambda part: len(part.steps)):
+        name = other.name.span
         if name.source is part.name.span.source and name.start == part.name.span.end + 1:
-            part = each
+            part = other
     return part
 
 
@@ -183,10 +187,10 @@ def _deeper(name: str, messages: Sequence[Message], found: Definitions) -> str |
             (f"{path}{field.name}.", tuple(nested_messages([field.type], found)))
             for path, owners in level
             for field in owners[0].fields
-            if all(each.field(field.name) for each in owners)
+            if all(owner.field(field.name) for owner in owners)
         ]
-        level = [each for each in inner if each[1]]
-        paths = [path for path, each in level if all(one.field(name) for one in each)]
+        level = [pair for pair in inner if pair[1]]
+        paths = [path for path, row in level if all(one.field(name) for one in row)]
         if paths:
             return f"{paths[0]}{name}" if len(paths) == 1 else None
     return None
@@ -202,25 +206,25 @@ def wrong_operands(
 ) -> Iterator[Finding]:
     """Messages with which a function calculates as if they were numbers or texts, whose fields it
     reads as items, or that are the result of a condition."""
-    for each in operands:
-        content = content_of(each.part, code, found)
+    for operand in operands:
+        content = content_of(operand.part, code, found)
         messages = nested_messages(content, found) if content else []
         if messages:
             yield Finding(
-                span=each.span,
-                message=f"`{each.part.text}` is a message (`{described(messages[0])[1:-1]}`), not"
-                " a value",
-                arguments=(each.part.text, messages[0].name),
-                help=_operand_help(each, messages[0]),
+                span=operand.span,
+                message=f"`{operand.part.text}` is a message (`{described(messages[0])[1:-1]}`),"
+                " not a value",
+                arguments=(operand.part.text, messages[0].name),
+                help=_operand_help(operand, messages[0]),
                 effect="the function fails, or the condition always has the same result",
-                related=(*here, *calls(leaf, each.span)),
+                related=(*here, *calls(leaf, operand.span)),
                 node=path,
             )
 
 
 def _operand_help(operand: Operand, message: Message) -> str:
     """The help for a message in place of one of its fields."""
-    names = [each.name for each in message.fields if each.name != "header"]
+    names = [field.name for field in message.fields if field.name != "header"]
     item = _item(operand.text)
     if item is not None and item in names:
         return f"write `{operand.part.text}.{item}`"
@@ -249,7 +253,7 @@ def unknown_field_finding(
 ) -> Finding:
     """`also`: the other place of the script that has the name; `other`: another type; `here`: the
     place that uses the code."""
-    names = sorted({each.name for message in messages for each in message.fields})
+    names = sorted({field.name for message in messages for field in message.fields})
     known = f"use one of its fields: {listed(names)}" if names else "remove it: it has no fields"
     if len(names) == 1 and not other:
         known = f"write `{names[0]}`, its only field, in place of `{word.text}`"
@@ -278,7 +282,7 @@ def field_finding(
     effect: str | None = None,
 ) -> Finding:
     label = "its fields are defined here"
-    places = [each.fields[0].span for each in messages if each.fields][:1]
+    places = [message.fields[0].span for message in messages if message.fields][:1]
     field = messages[0].field(word.text)
     if field is not None:
         label, places = f"`{word.text}` is defined here", [field.span]
@@ -288,7 +292,7 @@ def field_finding(
         arguments=(messages[0].name, word.text),
         help=help,
         related=(
-            *(each for span in places for each in other_place(span, label)),
+            *(related for span in places for related in other_place(span, label)),
             *calls(node, word.span),
         ),
         node=path,

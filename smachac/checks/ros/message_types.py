@@ -37,7 +37,7 @@ def _other_kind(parts: Sequence[str], kind: DefinitionKind) -> DefinitionKind | 
     can be named by its message; ROS 2 has messages such as `Drive_FeedbackMessage`."""
     if len(parts) != 3 or (kind == "action" and parts[1] == "msg") or "_" in parts[2]:
         return None
-    return next((each for each in KIND_WORDS if each == parts[1] and each != kind), None)
+    return next((word for word in KIND_WORDS if word == parts[1] and word != kind), None)
 
 
 def names_type(leaf: Leaf) -> bool:
@@ -87,19 +87,19 @@ def meant_type(name: str, kind: DefinitionKind, absent: Missing) -> str:
     name in another package, the nearest name, or all names."""
     word = name.casefold()
     sizes = [
-        each
-        for each in absent.names
-        if each.casefold().startswith(word) and each[len(word) :].isdigit()
+        name
+        for name in absent.names
+        if name.casefold().startswith(word) and name[len(word) :].isdigit()
     ]
     if len(sizes) > 1:
-        sizes.sort(key=lambda each: int(each[len(word) :]))
+        sizes.sort(key=lambda size: int(size[len(word) :]))
         return f"write {either(sizes)}"
     if len(absent.packages) == 1:
         return f"write `{absent.packages[0]}/{name}`, which is in another package"
     usual = USUAL_NAMES.get(word)
     guess = usual if usual in absent.names else guesser(absent.names)(name)
     if guess is None:
-        inside = [each for each in absent.names if word in each.casefold()]
+        inside = [name for name in absent.names if word in name.casefold()]
         guess = inside[0] if len(inside) == 1 else None
     known = f"write one of {listed(absent.names)}" if absent.names else ""
     return did_you_mean(guess) or known or f"write the name of {KIND_WORDS[kind]}"
@@ -126,7 +126,7 @@ def type_in_place_of_part(path: str, leaf: Leaf) -> Iterator[Finding]:
             if called not in (name, parts[-1]):
                 continue
             new = f"{name}.{part.capitalize()}" if len(parts) > 2 else f"{name}{part.capitalize()}"
-            given = ", ".join(ast.unparse(each) for each in (*call.args, *call.keywords))
+            given = ", ".join(ast.unparse(argument) for argument in (*call.args, *call.keywords))
             what = kind_word(kind)
             yield Finding(
                 span=word_in(called, held.value.span).span,

@@ -70,7 +70,7 @@ def value_faults(
     if isinstance(data, Struct):
         pairs = data.entries
     elif isinstance(data, tuple) and len(data) == len(message.fields):
-        pairs = tuple((each.name, item) for each, item in zip(message.fields, data, strict=True))
+        pairs = tuple((field.name, item) for field, item in zip(message.fields, data, strict=True))
     else:
         return
     for name, item in pairs:
@@ -90,7 +90,7 @@ def _nested_faults(
     items = data if wanted.array and isinstance(data, tuple) else (data,)
     for item in items:
         messages = nested_messages([FieldType(name=wanted.name)], found)
-        faults = [list(value_faults(item, each, found, names)) for each in messages]
+        faults = [list(value_faults(item, message, found, names)) for message in messages]
         if faults and all(faults):
             yield from faults[0]
 
@@ -110,7 +110,7 @@ def _fits(data: Data, wanted: FieldType) -> bool:
         return False
     if wanted.size is not None and len(data) < wanted.size:
         return False
-    return all(_fits(each, item_type(wanted)) for each in data)
+    return all(_fits(value, item_type(wanted)) for value in data)
 
 
 def item_type(wanted: FieldType) -> FieldType:
@@ -187,18 +187,20 @@ def constants_for(name: str, type: FieldType, messages: Iterable[Message]) -> li
     """The constants of the type of a field in its messages: those whose names begin with the name
     of the field, if there are some."""
     known = [
-        each
+        constant
         for message in messages
-        for each in message.constants
-        if each.type.name == type.name and not type.array
+        for constant in message.constants
+        if constant.type.name == type.name and not type.array
     ]
-    own = [each for each in known if each.name.lower().startswith(name.lower())]
+    own = [constant for constant in known if constant.name.lower().startswith(name.lower())]
     return own or known
 
 
 def named_constants(constants: Sequence[MessageConstant]) -> str:
     """The names of constants with their values, as in the definition."""
-    first = ", ".join(f"`{each.name}={each.value}`" for each in constants[:MOST_CONSTANTS])
+    first = ", ".join(
+        f"`{constant.name}={constant.value}`" for constant in constants[:MOST_CONSTANTS]
+    )
     return f"{first}, ..." if len(constants) > MOST_CONSTANTS else first
 
 
@@ -228,14 +230,14 @@ def with_levels(
     the first is a fault. The first field of a message that the value does not set is meant."""
     levels: dict[tuple[str, ...], list[ValueFault]] = {}
     every = list(faults)
-    for each in every:
-        if each.wanted is None:
-            levels.setdefault(each.names[:-1], []).append(each)
-    for each in every:
-        level = levels[each.names[:-1]] if each.wanted is None else [each]
-        help = _level_help(data, level, found) if each.wanted is None else None
-        if help is None or each is level[0]:
-            yield each, help
+    for fault in every:
+        if fault.wanted is None:
+            levels.setdefault(fault.names[:-1], []).append(fault)
+    for fault in every:
+        level = levels[fault.names[:-1]] if fault.wanted is None else [fault]
+        help = _level_help(data, level, found) if fault.wanted is None else None
+        if help is None or fault is level[0]:
+            yield fault, help
 
 
 def _level_help(data: Data, level: Sequence[ValueFault], found: Definitions) -> str | None:
@@ -246,12 +248,12 @@ def _level_help(data: Data, level: Sequence[ValueFault], found: Definitions) -> 
     if not isinstance(data, Struct):
         return None
     given = dict(data.entries)
-    names = [each.names[-1] for each in level]
+    names = [fault.names[-1] for fault in level]
     moved = Struct(entries=tuple((name, given.get(name)) for name in names))
     for field in level[0].message.fields:
         if field.name not in given and not field.type.array:
             inner = nested_messages([field.type], found)
-            if inner and not any([*value_faults(moved, each, found)] for each in inner):
+            if inner and not any([*value_faults(moved, message, found)] for message in inner):
                 help = f"write `{field.name}: {written_mapping(moved.entries)}`"
                 return f"{help} in place of {both(names)}" if len(names) > 1 else help
     return None
@@ -262,13 +264,13 @@ def in_field_order(data: Data, message: Message) -> str | None:
     several, or none."""
     if not isinstance(data, tuple) or not 2 <= len(data) <= MOST_ORDERED:
         return None
-    if len(data) != len(message.fields) or not all(written(each) for each in data):
+    if len(data) != len(message.fields) or not all(written(value) for value in data):
         return None
-    types = [each.type for each in message.fields]
+    types = [field.type for field in message.fields]
     fitting = (
         order
         for order in permutations(data)
         if all(_fits(item, type_) for item, type_ in zip(order, types, strict=True))
     )
     found = list(islice(fitting, 2))
-    return f"[{', '.join(written(each) for each in found[0])}]" if len(found) == 1 else None
+    return f"[{', '.join(written(value) for value in found[0])}]" if len(found) == 1 else None

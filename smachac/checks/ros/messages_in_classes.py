@@ -63,7 +63,7 @@ def _faults(
     for ref, words in messages.calls:
         owners = _content(ref, found)
         for word in words:
-            if owners and not any(each.field(word.text) for each in owners):
+            if owners and not any(owner.field(word.text) for owner in owners):
                 yield unknown_field_finding(path, leaf, word, owners, here=here)
     for variables, uses in messages.uses:
         contents: dict[str, Content] = {
@@ -79,5 +79,5 @@ def _content(ref: MessageRef, found: Definitions) -> list[Message]:
     """The messages that a name means; none if it is the name of a service or an action."""
     for kind, text, part in ref.readings():
         if part and (kind, text) in found:
-            return [each.part(part) for each in found[kind, text]]
+            return [definition.part(part) for definition in found[kind, text]]
     return []

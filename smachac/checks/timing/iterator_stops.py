@@ -17,8 +17,8 @@ def turned_renames(container: Container) -> list[tuple[str, str]]:
     ends = {name for child in container.children for name in outcome_names(child)}
     ends.add(container.exhausted_outcome)
     own = outcome_names(container)
-    return [each for each in container.final_map
-            if each[0] not in ends and each[1] in ends and each[0] in own]  # fmt: skip
+    return [pair for pair in container.final_map
+            if pair[0] not in ends and pair[1] in ends and pair[0] in own]  # fmt: skip
 
 
 def undeclared_stops(container: nodes.Iterator) -> list[str]:
@@ -27,4 +27,4 @@ def undeclared_stops(container: nodes.Iterator) -> list[str]:
         return []
     own = outcome_names(container)
     ends = stopped_endings(container)
-    return [each for each, result in ends.items() if result not in own]
+    return [name for name, result in ends.items() if result not in own]

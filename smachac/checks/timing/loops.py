@@ -130,7 +130,7 @@ def _has_no_end(tree: ast.expr | None) -> bool:
             args=arguments,
             keywords=named,
         ):
-            bounded = len(arguments) > 1 or any(each.arg in ("times", None) for each in named)
+            bounded = len(arguments) > 1 or any(keyword.arg in ("times", None) for keyword in named)
             return name in ("count", "cycle") or (name == "repeat" and not bounded)
     return False
 
@@ -217,9 +217,9 @@ def unbounded_loop(context: Context) -> Iterator[Finding]:
     """
     endless = context.endless
     looping = [
-        (path, each)
-        for path, each in context.linear
-        if context.of_container(_goes_back, path, each)
+        (path, item)
+        for path, item in context.linear
+        if context.of_container(_goes_back, path, item)
     ]
     waiting = _waiting(context) if looping else frozenset()
     for path, container in looping:
@@ -330,8 +330,10 @@ def _exceptional(children: Iterable[Node], by_name: Mapping[str, Node]) -> Itera
         if child.name not in there:
             continue
         region = there[: there.index(child.name) + 1]
-        failures = (each for each in child.transitions if fails(child, each.outcome))
-        if all(each.target in region for each in failures):
+        failures = (
+            transition for transition in child.transitions if fails(child, transition.outcome)
+        )
+        if all(failure.target in region for failure in failures):
             looping.add(step.target)
             yield _Loop(region, child, step)
 
@@ -413,8 +415,8 @@ def _spins(path: str, container: Linear, spin: list[PathStep]) -> Finding:
     child = next(child for child in container.children if child.name == spin[0].label)
     states = {step.label for step in spin[::2]}
     names = listed(step.label for step in spin[::2])
-    left = any(step.target not in states for each in container.children if each.name in states
-               for step in each.transitions if step.outcome != PREEMPTED)  # fmt: skip
+    left = any(step.target not in states for child in container.children if child.name in states
+               for step in child.transitions if step.outcome != PREEMPTED)  # fmt: skip
     ends = "" if left else "has no end and "
     return Finding(
         span=child.span,

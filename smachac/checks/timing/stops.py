@@ -150,8 +150,8 @@ def stop_as_success(context: Context) -> Iterator[Finding]:
             path=witness(found),
             node=f"{path}/{child.name}",
         )
-    for each in context.judged:
-        yield from _stopped_branches(context, each)
+    for judged in context.judged:
+        yield from _stopped_branches(context, judged)
     for inner, loop in context.containers:
         if isinstance(loop, nodes.Iterator):
             yield from _stopped_loop(context, inner, loop)

@@ -86,7 +86,7 @@ def no_timeout(context: Context) -> Iterator[Finding]:
         code: {python: my_robot.states:WaitForButton}
     """
     around: dict[str, Concurrence] = {}
-    watched = {each.branch for each in watched_branches(context)}
+    watched = {branch.branch for branch in watched_branches(context)}
     stoppable = stoppable_branches(context.containers, context.endings)
     limits = time_limits(context.machine.state_types)
     for path, node in context.states:
@@ -358,7 +358,7 @@ def no_way_to_stop(context: Context) -> Iterator[Finding]:
     for path, container in context.containers:
         lost = undeclared_stops(container) if isinstance(container, nodes.Iterator) else []
         turned = {result for _, result in turned_renames(container)} if lost else {}
-        lost = [each for each in lost if each not in turned]  # SM403 reports these
+        lost = [text for text in lost if text not in turned]  # SM403 reports these
         if not lost:
             continue
         name, counted_on = container.name, PREEMPTED in outcome_names(container)

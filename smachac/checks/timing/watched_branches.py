@@ -105,7 +105,7 @@ def missing_joins(context: Context) -> frozenset[str]:
     """The paths of the concurrences that wait for all branches, of which one never ends or is meant
     to be stopped by another one (SM407)."""
     ever, unstopped = context.endings
-    found = {each.path for each in watched_branches(context)}
+    found = {branch.path for branch in watched_branches(context)}
     for path, container in context.containers:
         if isinstance(container, Concurrence) and container.join == "all":
             branches = [f"{path}/{child.name}" for child in container.children]

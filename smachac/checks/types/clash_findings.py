@@ -86,16 +86,16 @@ def _finding(group: list[Clash], aliases: Mapping[str, str], *, at_origin: bool)
             shown.add(where)
             related.extend(other_place(where, message))
 
-    for each in group[:1] if at_origin else group:
+    for other in group[:1] if at_origin else group:
         if not at_origin:
-            show(_place(each), written(each.flow.origin))
-        for where, message in _remaps(each):
+            show(_place(other), written(other.flow.origin))
+        for where, message in _remaps(other):
             show(where, message)
         if at_origin:
-            show(each.cell.span, _read(each.cell, aliases))
-        declared = _in_interface(each.cell)
+            show(other.cell.span, _read(other.cell, aliases))
+        declared = _in_interface(other.cell)
         if declared is not None:
-            show(declared, f"the interface declares `{each.cell.key}` here")
+            show(declared, f"the interface declares `{other.cell.key}` here")
     lacking = without_fields(clash)
     first = lacking or written(origin) + _part(clash)
     second = _read(cell, aliases)
@@ -168,7 +168,7 @@ def _in_interface(cell: Cell) -> Span | None:
     if not isinstance(node, Leaf) or node.built_in or cell.role != "input":
         return None
     spans = [key.span for key in node.inputs if key.name == cell.key]
-    outside = [each for each in spans if each.source is not node.span.source]
+    outside = [span for span in spans if span.source is not node.span.source]
     return outside[0] if outside and outside[0].source is not NOWHERE.source else None
 
 
@@ -335,9 +335,9 @@ def _in_wanted_unit(clash: Clash) -> str:
         return f"write it in `{wanted}`: `{number}` of the type `{type_}`{correct}"
     node, key = origin.cell.node, origin.cell.key
     presets = () if node is None or isinstance(node, Leaf) else node.userdata
-    for each in presets:
-        if each.key == key and each.type == clash.misfit.given and is_number(each.value.data):
-            number = f"{each.value.data * factor:.6g}"
+    for preset in presets:
+        if preset.key == key and preset.type == clash.misfit.given and is_number(preset.value.data):
+            number = f"{preset.value.data * factor:.6g}"
             new = f'`{key}: {{type: "{type_}", value: {number}}}`'
             return f"write {new} in the `userdata` of {cell_owner(origin.cell)}{correct}"
     return f"multiply it by {factor:.6g}, which makes `{wanted}` of `{given}`{correct}"
@@ -417,7 +417,7 @@ def _meant(clash: Clash) -> str | None:
         flag = FLAGS.get(str(given.args[0]).casefold())
         return f"write `{flag}`" if flag else None
     if given.name == "literal" and number.name in ("int", "float"):
-        texts = [each for each in given.args if isinstance(each, str)]
+        texts = [argument for argument in given.args if isinstance(argument, str)]
         return number_meant(texts[0], number) if texts else None
     if given.name == "literal" and (number.name in ("list", "array") or number.name in HELP):
         return list_meant(str(given.args[0]))

@@ -63,7 +63,7 @@ def rotation_meant(angles: Data) -> str | None:
     other values. Formula: the product of the quaternions of the three rotations, yaw first."""
     if not isinstance(angles, tuple) or len(angles) != 3:
         return None
-    halves = [each / 2 for each in angles if is_number(each) and math.isfinite(each)]
+    halves = [angle / 2 for angle in angles if is_number(angle) and math.isfinite(angle)]
     if len(halves) != 3:
         return None
     (sr, sp, sy), (cr, cp, cy) = (tuple(map(wave, halves)) for wave in (math.sin, math.cos))
@@ -73,7 +73,7 @@ def rotation_meant(angles: Data) -> str | None:
         cr * cp * sy - sr * sp * cy,
         cr * cp * cy + sr * sp * sy,
     )
-    text = ", ".join(str(round(each, 4) + 0.0) for each in rotation)
+    text = ", ".join(str(round(number, 4) + 0.0) for number in rotation)
     which = "for no rotation" if not any(halves) else "for these 3 angles (roll, pitch, yaw in rad)"
     return f"write a quaternion, `[qx, qy, qz, qw]`: `[{text}]` {which}"
 

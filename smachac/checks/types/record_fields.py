@@ -26,10 +26,10 @@ def misspelt_fields(clash: Clash) -> Iterator[tuple[str, str]]:
     similar name, or one whose value is the missing name."""
     given, wanted = clash.misfit.given, clash.misfit.wanted
     missing = missing_fields(clash)
-    others = [each for each in fields(given) if each not in fields(wanted)] if missing else []
+    others = [field for field in fields(given) if field not in fields(wanted)] if missing else []
     for name in missing:
         near = guesser(others)(name) or next(
-            (each for each in others if is_turned_field(clash, name, each)), None
+            (other for other in others if is_turned_field(clash, name, other)), None
         )
         if near is not None:
             yield name, near

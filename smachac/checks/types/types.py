@@ -81,7 +81,7 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: done}
     """
-    clashes = [each for each in context.clashes["type"] if not _is_function(each)]
+    clashes = [clash for clash in context.clashes["type"] if not _is_function(clash)]
     yield from clash_findings(clashes, context.machine.aliases)
     yield from _lists_for_items(context)
     yield from _without_items(context)
@@ -96,28 +96,28 @@ def _lists_for_items(context: Context) -> Iterator[Finding]:
     """The states in a loop that read its list where they need its item."""
     seen: set[tuple[str, str]] = set()
     containers = dict(context.containers) if context.item_reads else {}
-    for each in context.item_reads:
-        around = containers.get(each.path.rpartition("/")[0])
+    for read in context.item_reads:
+        around = containers.get(read.path.rpartition("/")[0])
         if isinstance(around, nodes.Iterator) and not around.sugar:
             continue  # SM004: the state of an Iterator has no remapping
-        if (each.path, each.key) in seen:
+        if (read.path, read.key) in seen:
             continue
-        seen.add((each.path, each.key))
-        help = f"write `{each.key}: {each.item}`"
-        for name in each.lacking:
-            help += f", and add `{each.item}` to the `input_keys` of `{name}`"
-        cell = each.clash.cell
+        seen.add((read.path, read.key))
+        help = f"write `{read.key}: {read.item}`"
+        for name in read.lacking:
+            help += f", and add `{read.item}` to the `input_keys` of `{name}`"
+        cell = read.clash.cell
         yield Finding(
-            span=each.span,
-            message=f"`{each.node.name}` reads the list `{each.items}` as `{each.key}`, but the"
-            f" loop gives its item under `{each.item}`",
-            arguments=(each.key, each.items, "item"),
+            span=read.span,
+            message=f"`{read.node.name}` reads the list `{read.items}` as `{read.key}`, but the"
+            f" loop gives its item under `{read.item}`",
+            arguments=(read.key, read.items, "item"),
             help=help,
             effect=f"`{cell_owner(cell)[1:-1]}` gets the whole list in place of {named_item(cell)}",
-            related=calls(each.node, each.span),
-            node=each.path,
-            repairs=likely([Edit(span=each.span, text=each.item)], "read the item")
-            if each.span.text == each.items and not each.lacking
+            related=calls(read.node, read.span),
+            node=read.path,
+            repairs=likely([Edit(span=read.span, text=read.item)], "read the item")
+            if read.span.text == read.items and not read.lacking
             else (),
         )
 
@@ -140,7 +140,7 @@ def _without_items(context: Context) -> Iterator[Finding]:
         type_ = cell.holds or cell.declared
         lists = [
             name
-            for name in (each.name for each in container.inputs)
+            for name in (input_.name for input_ in container.inputs)
             if (other := context.types.cells.get((path, name))) is not None
             and kinds(other.holds or other.declared) == {"list"}
         ]
@@ -153,7 +153,11 @@ def _without_items(context: Context) -> Iterator[Finding]:
             if len(lists) == 1
             else f"write a list for `{key}`, such as `[1, 2, 3]`",
             related=(
-                *(place for each in origins for place in other_place(each.span, written(each))),
+                *(
+                    place
+                    for origin in origins
+                    for place in other_place(origin.span, written(origin))
+                ),
                 *calls(container, container.items_span),
             ),
             node=path,
@@ -215,7 +219,7 @@ def _is_function(clash: Clash) -> bool:
     value, node = clash.flow.value, clash.cell.node
     if clash.cell.role != "variable" or not isinstance(node, Leaf) or not isinstance(value, str):
         return False
-    roles = {each.role for each in node.variables if each.name == clash.cell.key}
+    roles = {variable.role for variable in node.variables if variable.name == clash.cell.key}
     return value.lstrip().startswith("lambda") and not roles.isdisjoint(("duration", "function"))
 
 

@@ -123,7 +123,7 @@ def steps_to_number(data: Data, number: float) -> tuple[int | str, ...]:
 def parts_of(data: Data, wanted: Type) -> Iterator[tuple[int | str, Data, Type]]:
     """The items or fields of a literal, each with the type that it must fit."""
     if isinstance(data, tuple):
-        yield from ((at, each, type_) for at, (each, type_) in enumerate(_items(data, wanted)))
+        yield from ((at, value, type_) for at, (value, type_) in enumerate(_items(data, wanted)))
     elif isinstance(data, Struct):
         types = fields(wanted) if wanted.name == "record" else {}
         held = dict(data.entries)
@@ -139,11 +139,11 @@ def parts_of(data: Data, wanted: Type) -> Iterator[tuple[int | str, Data, Type]]
 def _items(data: tuple[Data, ...], wanted: Type) -> Iterator[tuple[Data, Type]]:
     count = len(data)
     if wanted in (POINT, QUATERNION) and count == (3 if wanted == POINT else 4):
-        yield from ((each, FLOAT) for each in data)
+        yield from ((value, FLOAT) for value in data)
     elif wanted.name in ("Pose", "Transform") and count == 2:
         yield from zip(data, (POINT, QUATERNION), strict=True)
     elif wanted.name in ("list", "array") and length_of(wanted) in (None, count):
-        yield from ((each, inside(wanted)) for each in data)
+        yield from ((value, inside(wanted)) for value in data)
 
 
 def place_of_fault(code: Expression, fault: Fault) -> Span:

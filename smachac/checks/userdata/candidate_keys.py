@@ -43,7 +43,7 @@ def unread_output(scope: UserdataScope, missing: str) -> UnreadOutput | None:
     """The only output in a container that nothing reads and that has a word of the missing key:
     `pose` for `found_pose`."""
     words = words_of(missing)
-    found = [each for each in unread_outputs(scope, missing) if words & words_of(each.key)]
+    found = [output for output in unread_outputs(scope, missing) if words & words_of(output.key)]
     return found[0] if len(found) == 1 else None
 
 
@@ -60,7 +60,7 @@ def unread_outputs(scope: UserdataScope, missing: str) -> Iterator[UnreadOutput]
             if key.name not in names:
                 help = f"{added_remapping(child, key.name, missing)}, whose `{key.name}` nothing"
                 help += " reads"
-            place = next((each.to_span for each in child.remaps if each.to == outer), child.span)
+            place = next((remap.to_span for remap in child.remaps if remap.to == outer), child.span)
             yield UnreadOutput(outer, place, help, child.name)
 
 

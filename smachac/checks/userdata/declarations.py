@@ -176,9 +176,9 @@ def _misnamed_outputs(scope: UserdataScope) -> tuple[tuple[Node, Remap, str], ..
     found: list[tuple[Node, Remap, str]] = []
     for child, remap, key in remapped:
         meant = guess.sure(remap.to) if remap.to not in read else None
-        if meant is None or key.name in {each.name for each in child.inputs}:
+        if meant is None or key.name in {input_.name for input_ in child.inputs}:
             continue
-        if all(misfit(key.type, each.type) is None for each in read[meant]):
+        if all(misfit(key.type, member.type) is None for member in read[meant]):
             found.append((child, remap, meant))
     return tuple(found)
 
@@ -257,7 +257,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
         set_ = scope.uses.provided
         for key in container.outputs:
             if key.name not in set_:
-                own = {each.name for each in container.outputs}
+                own = {output.name for output in container.outputs}
                 meant = guesser(sorted(set_ - own)).sure(key.name)
                 finding = _unused(scope.path, container, key, "output", meant)
                 is_read = (scope.path, key.name) in read
@@ -269,15 +269,15 @@ def _unwritten_outputs(
     context: Context, unwritten: Iterable[Unwritten], read: Collection[tuple[str, str]]
 ) -> Iterator[Finding]:
     """The output keys that built-in states never write. `read`: those that are read and unset."""
-    for path, found in groupby(unwritten, key=lambda each: each.path):
-        every = [each for each in found if each.slots]
+    for path, found in groupby(unwritten, key=lambda unwritten: unwritten.path):
+        every = [unwritten for unwritten in found if unwritten.slots]
         if every:
-            is_read = any((path, each.key.name) in read for each in every)
+            is_read = any((path, unwritten.key.name) in read for unwritten in every)
             yield unreceived_finding(every, context.machine.definitions, read=is_read)
-    for each in unwritten:
-        if each.slots:
+    for other in unwritten:
+        if other.slots:
             continue
-        finding = unwritten_finding(each, read=(each.path, each.key.name) in read)
+        finding = unwritten_finding(other, read=(other.path, other.key.name) in read)
         if finding is not None:
             yield finding
 
@@ -385,9 +385,9 @@ def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
             yield lacking
             return
     known = [userdata_fields(code.text) for code in called]
-    fields = [each for each in known if each is not None]
+    fields = [fields for fields in known if fields is not None]
     if len(fields) == len(known):
-        used = {key for each in fields for key in (*each.read, *each.tested)}
+        used = {key for field in fields for key in (*field.read, *field.tested)}
         undeclared = [key for key, _ in undeclared_reads(leaf)]
         used |= _meant_keys(undeclared, leaf.inputs) if undeclared else set()
         arguments = [key for key in leaf.inputs if key.role == "argument"]
@@ -401,11 +401,11 @@ def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
 def _without_conditions(path: str, leaf: Leaf) -> Finding | None:
     """The finding on a state of conditions that has none, although it has outcomes for them."""
     possible = {variable(leaf, "default_outcome"), leaf.catches}
-    outcomes = [each for each in leaf.outcomes if each.name not in possible]
+    outcomes = [outcome for outcome in leaf.outcomes if outcome.name not in possible]
     held = variable_of(leaf, "conditions")
     if not outcomes or held is None or meant_default(leaf) is not None:
         return None
-    names = [each.name for each in outcomes]
+    names = [outcome.name for outcome in outcomes]
     keys = [name if is_plain(name) else f"'{name}'" for name in names]
     pairs = ", ".join(f"{key}: 'lambda ud: ...'" for key in keys)
     reads = listed([f"ud.{key.name}" for key in leaf.inputs if key.role == "argument"])
@@ -450,5 +450,5 @@ def _unused_keys(
 
 def _meant_keys(wrong: Iterable[str], known: Iterable[Key]) -> set[str]:
     """The likely keys behind misspelt names (SM308, SM310)."""
-    guess = guesser(each.name for each in known)
+    guess = guesser(key.name for key in known)
     return {name for key in wrong if (name := guess(key)) is not None}

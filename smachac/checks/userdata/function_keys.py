@@ -33,7 +33,7 @@ def unknown_function_reads(context: Context) -> Iterator[Finding]:
         unread = [key.name for key in node.inputs if key.name not in used]
         guess = guesser(unread)
         inside = context.types.cells.keys()
-        for word in {each.text: each for each in reversed(facts.reads)}.values():
+        for word in {read.text: read for read in reversed(facts.reads)}.values():
             if word.text not in known:
                 yield Finding(
                     span=word.span,

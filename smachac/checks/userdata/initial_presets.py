@@ -25,19 +25,23 @@ MOST_RELATED = 5
 def missing_together(found: Iterable[Missing]) -> Iterator[tuple[Missing, ...]]:
     """The keys of each container that has no initial values and lacks two or more. A key that is
     set later counts only if the state that reads it first also sets it, as a counter."""
-    for _, group in groupby(found, lambda each: each.scope.path):
-        every = [each for each in group if not each.scope.container.userdata]
+    for _, group in groupby(found, lambda missing: missing.scope.path):
+        every = [missing for missing in group if not missing.scope.container.userdata]
         scope = every[0].scope if every else None
-        if scope is None or scope.inputs or not any(each.cause == "nowhere" for each in every):
+        if (
+            scope is None
+            or scope.inputs
+            or not any(missing.cause == "nowhere" for missing in every)
+        ):
             continue
         known = {key for steps in scope.steps.values() for step in steps
                  for key in step.writes.perhaps}  # fmt: skip
         guess = guesser(sorted(known | scope.held))
         lacking = tuple(
-            each
-            for each in every
-            if (each.cause == "nowhere" and guess.sure(each.key) is None)
-            or (each.cause == "unset" and counts(each))
+            missing
+            for missing in every
+            if (missing.cause == "nowhere" and guess.sure(missing.key) is None)
+            or (missing.cause == "unset" and counts(missing))
         )
         if len(lacking) > 1:
             yield lacking
@@ -57,13 +61,13 @@ def counts(missing: Missing) -> bool:
 def together_finding(context: Context, lacking: tuple[Missing, ...]) -> Finding:
     """The finding on such keys, at the first state that reads one."""
     scope = lacking[0].scope
-    readers = [_first(each) for each in lacking]
-    keys = [each.key for each in lacking]
+    readers = [_first(missing) for missing in lacking]
+    keys = [missing.key for missing in lacking]
     first = readers[0]
     where = container_name(scope, first.span)
-    pairs = [(each.key, initial_value(context.types, reader, each))
-             for each, reader in zip(lacking, readers, strict=True)]  # fmt: skip
-    others = [each for each in readers[1:] if each.span != first.span][:MOST_RELATED]
+    pairs = [(missing.key, initial_value(context.types, reader, missing))
+             for missing, reader in zip(lacking, readers, strict=True)]  # fmt: skip
+    others = [reader for reader in readers[1:] if reader.span != first.span][:MOST_RELATED]
     return Finding(
         span=first.span,
         message=f"nothing in {where} sets {listed(keys)} before its states read them",
@@ -71,7 +75,11 @@ def together_finding(context: Context, lacking: tuple[Missing, ...]) -> Finding:
         help=f"give them initial values in {where}:"
         f" `{notation.initial_values(scope.container, pairs)}`",
         related=(
-            *(place for each in others for place in other_place(each.span, f"{each.words} here")),
+            *(
+                place
+                for other in others
+                for place in other_place(other.span, f"{other.words} here")
+            ),
             *calls(first.node, first.span),
         ),
         node=first.path,

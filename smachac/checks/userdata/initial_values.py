@@ -70,11 +70,11 @@ def _overruled(path: str, preset: Preset) -> Iterator[Finding]:
     if not preset.given:
         return
     *others, last = preset.given
-    unused = [each for each in others if not _alike(each, last)]
+    unused = [other for other in others if not _alike(other, last)]
     if not unused:
         return
     own = path.rpartition("/")[2]
-    owners = [own if each.own else each.state.text for each in unused]
+    owners = [own if given.own else given.state.text for given in unused]
     several = len(unused) > 1
     key = preset.key
     yield Finding(
@@ -89,7 +89,7 @@ def _overruled(path: str, preset: Preset) -> Iterator[Finding]:
         if several
         else None,
         related=(
-            *(Related(span=each.span, message="overwritten too") for each in unused[1:]),
+            *(Related(span=given.span, message="overwritten too") for given in unused[1:]),
             Related(span=_place(last, unused[0]), message="this value is used"),
         ),
         node=path,
@@ -100,17 +100,17 @@ def _renamed(preset: Preset, unused: list[Given]) -> str:
     """How each owner keeps its value: the states whose values are lost get keys of their own; if
     the value of the container is lost, all states do."""
     renamed = preset.given if unused[0].own else unused
-    states = [each for each in renamed if not each.own]
+    states = [given for given in renamed if not given.own]
     names: dict[str, str] = {}
     shown = []
-    for each in states:
-        value = repr(each.value.data)
+    for state in states:
+        value = repr(state.value.data)
         name = names.setdefault(value, f"{preset.key}_{len(names) + 2}")
-        text = each.value.span.text
+        text = state.value.span.text
         text = text if 0 < len(text) <= _LONGEST_VALUE and "\n" not in text else "..."
         shown.append(
             f"`userdata: {{{name}: {text}}}` and `remapping: {{{preset.key}: {name}}}` at"
-            f" `{each.state.text}`"
+            f" `{state.state.text}`"
         )
     more = len(shown) - MOST_LISTED
     return (

@@ -41,12 +41,12 @@ def _null_key(
     if unread is None or not may_be(context.types, scope, unread.key, present(preset.type)):
         return
     for place, leaf, own in readers:
-        names: list[tuple[str, Type]] = [(each.name, ANY) for each in leaf.inputs]
+        names: list[tuple[str, Type]] = [(input_.name, ANY) for input_ in leaf.inputs]
         userdata = mapping((name, NONE if name == own else type_) for name, type_ in names)
         codes = [*(functions(leaf, "callbacks") or {}).values()]
         for code in (*codes, *(functions(leaf, "conditions") or {}).values()):
             faults = function_faults(code.text, userdata)
-            found = [each for each in faults if each.kind == "operation" and each.always]
+            found = [fault for fault in faults if fault.kind == "operation" and fault.always]
             if not found:
                 continue
             called = f"`{own}`" if own == preset.key else f"`{own}` (`{preset.key}` outside)"
@@ -70,11 +70,11 @@ def _readers(path: str, container: Container, key: str) -> Iterator[tuple[str, L
     names for it; none below a container that compares the key with null."""
     for child in container.children:
         below = f"{path}/{child.name}"
-        for each in inputs_from(child, key):
+        for input_ in inputs_from(child, key):
             if isinstance(child, Leaf):
-                yield below, child, each.name
-            elif not _is_compared(child, each.name):
-                yield from _readers(below, child, each.name)
+                yield below, child, input_.name
+            elif not _is_compared(child, input_.name):
+                yield from _readers(below, child, input_.name)
 
 
 def _is_compared(container: Container, key: str) -> bool:

@@ -92,7 +92,7 @@ def _dead(context: Context, store: DeadStore) -> Finding:
     leaf, span = store.leaf, place_of(store.leaf, store.key)
     places = [context.spans[f"{store.path}/{name}"] for name in store.again[:MOST_PLACES]]
     other = notation.mapping(leaf, "remapping", [(store.key.name, f"{store.name}_2")])
-    related = [place for each in places for place in other_place(each, "it is set again here")]
+    related = [place for span in places for place in other_place(span, "it is set again here")]
     return Finding(
         span=span,
         message=f"`{leaf.name}` sets `{store.name}`, but {listed(store.again)} sets it again before"

@@ -75,7 +75,7 @@ def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
             yield _without_list(inner, leaf, "output", dropped, _place_of_write(leaf, dropped[0]))
             continue
         for key in dropped:
-            only = any(each.name == key for each in leaf.inputs)
+            only = any(input_.name == key for input_ in leaf.inputs)
             what = "only an input key" if only else "not one of its output keys"
             span = _place_of_write(leaf, key)
             unset = _never_set(leaf) if not only else []
@@ -191,7 +191,7 @@ def _unknown_key_names(context: Context) -> Iterator[Finding]:
     for path, leaf in context.states:
         if not isinstance(leaf, Leaf):
             continue
-        inputs = [each.name for each in leaf.inputs]
+        inputs = [input_.name for input_ in leaf.inputs]
         for key in key_names(leaf.inputs, "key_names"):
             cell = context.types.cells.get((path, key))
             flows = [flow for alike in cell.flows.values() for flow in alike] if cell else []
@@ -226,7 +226,7 @@ def _undeclared_accesses(
         read = [*undeclared_reads(leaf), *undeclared_slot_reads(leaf, types)]
         if not read:
             continue
-        guess, around = guesser(each.name for each in leaf.inputs), keys_around(container)
+        guess, around = guesser(input_.name for input_ in leaf.inputs), keys_around(container)
         names = [key for key, _ in read]
         if len(read) > 1 and not leaf.inputs and around.issuperset(names):
             place = key_place(read[0][1], names[0])

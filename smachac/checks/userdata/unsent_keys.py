@@ -28,7 +28,7 @@ def unsent_keys(context: Context) -> Iterator[Finding]:
     for path, leaf in context.leaves_with_variables:
         if not leaf.built_in or leaf.open or not leaf.inputs:
             continue
-        roles: list[VariableRole] = [each for each in SENDERS if variable_of(leaf, each)]
+        roles: list[VariableRole] = [sender for sender in SENDERS if variable_of(leaf, sender)]
         role = roles[0] if roles else None
         used = _keys_used(leaf, types) if role is not None else None
         if role is None or used is None or not used <= {key.name for key in leaf.inputs}:
@@ -49,16 +49,16 @@ def _keys_used(leaf: Leaf, types: Mapping[str, StateType]) -> set[str] | None:
         if fact is None or data is None:
             continue
         if fact.keys:
-            if not isinstance(data, tuple) or not all(isinstance(each, str) for each in data):
+            if not isinstance(data, tuple) or not all(isinstance(value, str) for value in data):
                 return None
-            used |= {str(each) for each in data} if fact.keys == "input" else set()
+            used |= {str(value) for value in data} if fact.keys == "input" else set()
         elif fact.arguments is not None:
             slot = functions.get(held.name)
             name = userdata_parameter(slot) if slot is not None else None
             tree = slot.tree if slot is not None else None
             if not isinstance(tree, ast.Lambda) or name is None:
                 return None
-            if any(each.id in USERDATA for each in free_names(tree)):
+            if any(name.id in USERDATA for name in free_names(tree)):
                 return None  # SM019: another name for the userdata was meant
             fields = fields_of(tree.body, frozenset([name]))
             if fields is None:

@@ -106,7 +106,7 @@ def unwritten_output(context: Context) -> Iterator[Finding]:
                 return "found"
     """
     for path, leaf, type_, facts in own_types(context, declared=True):
-        if any(each.role == "callbacks" for each in type_.variables.values()):
+        if any(variable.role == "callbacks" for variable in type_.variables.values()):
             continue
         kept = {key.name for key in type_.input_keys}  # set before, perhaps changed in place
         outputs = [key.name for key in type_.output_keys if key.name not in kept]
@@ -137,16 +137,16 @@ def _unchanged_keys(
     """The first return that breaks a promise of `writes:` for a key that is also an input, if the
     class never sets the key: a number or a text, which code can only replace."""
     inputs = {key.name for key in type_.input_keys}
-    known = facts.endings and all(each.written is not None for each in facts.endings)
+    known = facts.endings and all(ending.written is not None for ending in facts.endings)
     unused = dict(facts.unused)
     guess = guesser([key.name for key in type_.output_keys])
-    names = [each.name for each in type_.output_keys]
+    names = [key.name for key in type_.output_keys]
     misspelt = {guess(word.text) for word in facts.writes if word.text not in names}
     for key in type_.output_keys if known else ():
         name = key.name
         if name not in inputs or name in misspelt or present(key.type).name not in FIXED:
             continue
-        if any(name in (each.written or ()) for each in facts.endings):
+        if any(name in (ending.written or ()) for ending in facts.endings):
             continue
         promised = {outcome for outcome, keys in type_.writes if name in keys}
         for ending in facts.endings:
@@ -183,8 +183,8 @@ def _unwritten(
     """The returns that break a promise of `writes:`, or the whole `execute` if it never sets a key
     that is not in `writes:`."""
     promised = {outcome for outcome, keys in type_.writes if key in keys}
-    missing = [each for each in facts.endings if each.written is not None]
-    missing = [each for each in missing if key not in (each.written or ())]
+    missing = [ending for ending in facts.endings if ending.written is not None]
+    missing = [ending for ending in missing if key not in (ending.written or ())]
     if promised:
         for ending in facts.endings:
             if ending.outcome.text in promised:
@@ -214,7 +214,7 @@ WAY_PAST = {
 def _promise(type_: StateType, outcome: str, key: str) -> tuple[Related, ...]:
     """The place in the interface that promises a key for an outcome; none if the interface is not a
     file of its own."""
-    place = next((each.span for each in type_.output_keys if each.name == key), None)
+    place = next((member.span for member in type_.output_keys if member.name == key), None)
     if place is None or not place.source.name.endswith((".yml", ".yaml")):
         return ()
     tree = parse(place.source, [])
@@ -223,7 +223,7 @@ def _promise(type_: StateType, outcome: str, key: str) -> tuple[Related, ...]:
         writes.value.get(outcome) if writes is not None and isinstance(writes.value, Map) else None
     )
     items = entry.value.items if entry is not None and isinstance(entry.value, Seq) else ()
-    found = next((each for each in items if getattr(each, "value", None) == key), None)
+    found = next((item for item in items if getattr(item, "value", None) == key), None)
     return () if found is None else other_place(found.span, f"`writes:` promises `{key}` here")
 
 
@@ -240,7 +240,7 @@ def _setting(leaf: Leaf, type_: StateType, ending: Ending, key: str, where: str)
     }
     is_set = any(word.text == key for word in (facts.writes if facts is not None else ()))
     words = words_of(key) if not is_set else set()
-    near = [key] if key in known else [each for each in known if words & words_of(each)]
+    near = [key] if key in known else [text for text in known if words & words_of(text)]
     if len(near) == 1:
         return f"write `{name}.{key} = {near[0]}` {where} this `return`"
     example = _of_same_type(type_, key, name) if not is_set else ""
@@ -250,10 +250,12 @@ def _setting(leaf: Leaf, type_: StateType, ending: Ending, key: str, where: str)
 def _of_same_type(type_: StateType, key: str, userdata: str) -> str:
     """The part of a help with the only input that has the same type as an output. Empty if there is
     no such input, or if the type is a plain number, text or boolean."""
-    wanted = next(each.type for each in type_.output_keys if each.name == key)
+    wanted = next(member.type for member in type_.output_keys if member.name == key)
     if is_open(wanted) or (wanted.name in SCALARS and not wanted.args):
         return ""
-    found = [each.name for each in type_.input_keys if each.type == wanted and each.name != key]
+    found = [
+        member.name for member in type_.input_keys if member.type == wanted and member.name != key
+    ]
     if len(found) != 1:
         return ""
     return f", for example to `{userdata}.{found[0]}`, which has its type"
@@ -294,6 +296,6 @@ def _promised_elsewhere(leaf: Leaf, type_: StateType, key: str) -> str:
     """The outcome before which a class sets a key, if that is the only one and `writes:` does not
     have it; else empty."""
     endings = leaf.class_facts.endings if leaf.class_facts is not None else ()
-    found = {each.outcome.text for each in endings if key in (each.written or ())}
+    found = {ending.outcome.text for ending in endings if key in (ending.written or ())}
     promised = {outcome for outcome, keys in type_.writes if key in keys}
     return found.pop() if len(found) == 1 and found.isdisjoint(promised) else ""

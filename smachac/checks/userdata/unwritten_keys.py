@@ -54,7 +54,9 @@ def _unwritten(path: str, leaf: Leaf, types: Mapping[str, StateType]) -> Iterato
     type_ = types.get(leaf.type)
     part = received_part(leaf)
     if part is not None and type_ is not None:
-        slots = next((name for name, each in type_.variables.items() if each.role == part), "")
+        slots = next(
+            (name for name, variable in type_.variables.items() if variable.role == part), ""
+        )
         unset = unreceived_outputs(leaf) if slots else ()
         yield from (Unwritten(path, leaf, key, (), slots) for key in leaf.outputs
                     if key.name in unset)  # fmt: skip
@@ -75,7 +77,7 @@ def _unwritten(path: str, leaf: Leaf, types: Mapping[str, StateType]) -> Iterato
 def _writes_only_known(leaf: Leaf, type_: StateType) -> bool:
     """Whether a state writes nothing but keys of its type and those of its callbacks. In a type of
     the user, keys with the role of results are those of callbacks."""
-    roles = {each.role for each in type_.variables.values()}
+    roles = {variable.role for variable in type_.variables.values()}
     if not leaf.built_in:
         return bool(functions(leaf, "callbacks"))
     if "output_function" in roles:
@@ -98,9 +100,12 @@ def read_unwritten(context: Context) -> Mapping[tuple[str, str], tuple[str, str]
     nothing else sets: by the path and the key of the state that never writes them, the path and the
     key of the container."""
     scopes = context.absorbed_flow.scopes
-    missing = {(each.scope.path, each.key) for each in context.missing_keys("unset", "nowhere")}
-    never = {(each.path, each.key.name): remapping(each.leaf)[each.key.name]
-             for each in context.of_machine(unwritten_keys) if each.leaf.built_in}  # fmt: skip
+    missing = {(key.scope.path, key.key) for key in context.missing_keys("unset", "nowhere")}
+    never = {
+        (unwritten.path, unwritten.key.name): remapping(unwritten.leaf)[unwritten.key.name]
+        for unwritten in context.of_machine(unwritten_keys)
+        if unwritten.leaf.built_in
+    }
     for path, scope in scopes.items() if missing else ():
         never |= {(path, key): outer for key, outer in scope.outputs.items()
                   if key not in scope.uses.provided}  # fmt: skip
@@ -129,12 +134,12 @@ def unwritten_finding(found: Unwritten, *, read: bool) -> Finding | None:
     help = f"remove `{key.name}` from the `output_keys` of `{leaf.name}`, or {callback}"
     if names:
         message = f"`{leaf.name}` never writes `{key.name}`: `{leaf.type}` writes {listed(names)}"
-        free = [name for name in names if all(each.name != name for each in leaf.outputs)]
+        free = [name for name in names if all(output.name != name for output in leaf.outputs)]
         meant = guesser(free)(key.name) or (free[0] if free else None)
         outer = remapping(leaf)[key.name]
         if meant is not None:
             help = f"write `output_keys: [{meant}]` and `remapping: {{{meant}: {outer}}}`"
-        if any(each.role == "callbacks" for each in leaf.variables):
+        if any(variable.role == "callbacks" for variable in leaf.variables):
             help += f", or {callback}"
     return Finding(
         span=span,
@@ -155,11 +160,11 @@ def unreceived_finding(
     `read`: a state reads one of them, but it is unset."""
     path, leaf, key, _, slots = every[0]
     part, span = received_part(leaf) or "response", place_of(leaf, key)
-    names = [each.key.name for each in every]
+    names = [unwritten.key.name for unwritten in every]
     kinds = [one for _, found in leaf_definitions(leaf, definitions) for one in found]
     known = {field.name for one in kinds for field in one.part(part).fields}
     others = [name for name in names if kinds and name not in known]
-    held = next((each for each in leaf.variables if each.name == slots), None)
+    held = next((variable for variable in leaf.variables if variable.name == slots), None)
     listed_ = held is not None and held.value.data
     fits = [name for name in names if name not in others]
     help = f"add `{slots}: [{', '.join(fits)}]` to `{leaf.name}`"

@@ -188,7 +188,7 @@ def _unknown_remaps(path: str, container: Container, definitions: Definitions) -
         found = list(_unknown_remaps_of(f"{path}/{node.name}", node))
         leaf = node if found and isinstance(node, nodes.Leaf) else None
         reported = remapped_fields(leaf, definitions) if leaf is not None else ()
-        yield from (each for each in found if each.arguments[0] not in reported)
+        yield from (finding for finding in found if finding.arguments[0] not in reported)
         keys = lacking_inputs(node)
         if keys and not isinstance(node, nodes.Leaf):
             place = node.children[0].span, keys
@@ -199,7 +199,7 @@ def _unknown_remaps(path: str, container: Container, definitions: Definitions) -
 
 def _lacking(path: str, node: Container, keys: Sequence[str]) -> Finding:
     """SM302 for keys in the remapping of a container that it lacks as inputs."""
-    first = next(each for each in node.remaps if each.key in keys)
+    first = next(remap for remap in node.remaps if remap.key in keys)
     source = node.children[0].span.source
     file = PurePath(source.name).name
     owner = f"`{node.name}`" if source is first.span.source else f"the state of `{file}`"
@@ -237,7 +237,7 @@ def _unknown_remaps_of(path: str, node: Node) -> Iterator[Finding]:
         if remap in turned:
             if remap is not turned[0]:
                 continue
-            right = notation.entries(node, ((each.to, each.key) for each in turned))
+            right = notation.entries(node, ((remap.to, remap.key) for remap in turned))
             right = f"{{{right}}}" if len(turned) > 1 else right
             known = f"the key of the state comes first: write `{right}`"
         yield Finding(
@@ -277,7 +277,7 @@ def _remapped(types: Types, missing: Missing) -> Iterator[Finding]:
                 continue
             wanted = types.inputs.get((f"{scope.path}/{child.name}", remap.key), ANY)
             fitting = fitting_keys(types, missing, child, wanted)
-            choices = [notation.entry(child, remap.key, each) for each in fitting]
+            choices = [notation.entry(child, remap.key, text) for text in fitting]
             initial = notation.initial_values(scope.container, [(key, "...")])
             help = f"write {either(choices)}, or " if choices else ""
             yield Finding(
@@ -292,8 +292,8 @@ def _remapped(types: Types, missing: Missing) -> Iterator[Finding]:
                 node=f"{scope.path}/{child.name}",
                 repairs=tuple(
                     repair
-                    for each in fitting
-                    for repair in likely([Edit(span=remap.to_span, text=each)], "remap a key")
+                    for text in fitting
+                    for repair in likely([Edit(span=remap.to_span, text=text)], "remap a key")
                 ),
             )
 
@@ -397,8 +397,8 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
                 ),
                 *(
                     related
-                    for each in others[:MOST_RELATED]
-                    for related in other_place(each.span, f"{each.words} as well")
+                    for other in others[:MOST_RELATED]
+                    for related in other_place(other.span, f"{other.words} as well")
                 ),
                 *calls(reader.node, reader.span),
             ),
@@ -431,7 +431,7 @@ def _between(flow: DataFlow, path: str, holder: str) -> list[str]:
     outermost first."""
     names = path[len(holder) + 1 :].split("/")
     paths = ["/".join([holder, *names[: at + 1]]) for at in range(len(names))]
-    return list(dict.fromkeys(name_in_script(flow.scopes[each].container) for each in paths))
+    return list(dict.fromkeys(name_in_script(flow.scopes[path].container) for path in paths))
 
 
 def _input_help(flow: DataFlow, path: str, holder: str, key: str) -> str:
@@ -553,7 +553,7 @@ def _output_help(key: str, keeper: Container, written: Span | None) -> str:
     if written is None:
         return listing([keeper], "output_keys", key)
     where = f"the outermost state in `{written.source.name}`"
-    own = [each.name for each in keeper.outputs if each.span.source is written.source]
+    own = [output.name for output in keeper.outputs if output.span.source is written.source]
     if own:
         return f"write `output_keys: [{', '.join([*own, key])}]` in {where}"
     return f"add `output_keys: [{key}]` to {where}"

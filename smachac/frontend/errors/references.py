@@ -326,8 +326,8 @@ def look_up_of_call(
     call by `state`, `idle` are the params of the call that the sub-script does not read, `turned`
     is the one that has the name of the param as its value, `places` are its look-ups."""
     name = word.text
-    near = turned or guesser(each.text for each in idle)(name)
-    wrong = next((each for each in idle if each.text == near), idle[0] if len(idle) == 1 else None)
+    near = turned or guesser(word.text for word in idle)(name)
+    wrong = next((word for word in idle if word.text == near), idle[0] if len(idle) == 1 else None)
     help = f"add `{name}: ...` to the `params` of `{state}`, of a container around it,"
     help += " or of the script"
     if wrong is not None and turned:
@@ -336,8 +336,8 @@ def look_up_of_call(
         other = f"write `{name}:` in place of `{wrong.text}:`, or add it"
         help = f"did you mean `{name}`?" if near else other
     renamed = [
-        (respelt(each, name), [edit for one in places for edit in respelt(one, each.text)])
-        for each in idle[:MOST_GIVEN]
+        (respelt(word, name), [edit for one in places for edit in respelt(one, word.text)])
+        for word in idle[:MOST_GIVEN]
     ]
     item = unresolved_look_up(word, ())
     finding = Finding(

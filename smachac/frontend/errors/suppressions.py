@@ -84,12 +84,12 @@ def _without(codes: list[Span]) -> tuple[Edit, ...]:
     end = text.find("\n", codes[0].end)
     end = len(text) if end < 0 else end
     every = _COMMENT.finditer(text, start, end)
-    found = next((each for each in every if codes[0].start < each.end()), None)
+    found = next((match_ for match_ in every if codes[0].start < match_.end()), None)
     if found is None:
         return ()
     if len(_CODE.findall(found["codes"])) > len(codes):
         behind = [_BEHIND.match(text, code.end, end) for code in codes]
-        ends = [each.end() for each in behind if each is not None]
+        ends = [match_.end() for match_ in behind if match_ is not None]
         pairs = zip(codes, ends, strict=True)
         return tuple(Edit(span=Span(source, code.start, to), text="") for code, to in pairs)
     begin = start + len(text[start : found.start()].rstrip(" \t"))

@@ -121,8 +121,8 @@ def find_definitions(
                 report += [problem] if problem not in report else []
         if sources:
             own = TypeName(word.package, name)
-            read = [read_definition(each, own, kind, report) for each in sources]
-            found = tuple(each for each in read if each is not None)
+            read = [read_definition(source, own, kind, report) for source in sources]
+            found = tuple(definition for definition in read if definition is not None)
             return found if len(found) == len(read) else ()
     return ()
 
@@ -136,16 +136,18 @@ def _standard(
     for name in names:
         path = f"{package}/{kind}/{name}.{kind}"
         sources = [Source(path, text) for text in texts.get(f"{kind}/{name}", ())]
-        read = [read_definition(each, TypeName(package, name), kind) for each in sources]
+        read = [read_definition(source, TypeName(package, name), kind) for source in sources]
         if read:
-            return tuple(_without_places(each) for each in read if each is not None)
+            return tuple(
+                _without_places(definition) for definition in read if definition is not None
+            )
     return ()
 
 
 def _without_places(definition: Definition) -> Definition:
     messages = [
-        replace(each, fields=tuple(replace(one, span=NOWHERE) for one in each.fields))
-        for each in definition.messages
+        replace(message, fields=tuple(replace(one, span=NOWHERE) for one in message.fields))
+        for message in definition.messages
     ]
     return replace(definition, messages=tuple(messages), span=NOWHERE)
 
@@ -162,15 +164,15 @@ def definitions_of(
             todo.append((kind, text))
     for text, name in _called_messages(base, library).items():
         found["msg", text] = find_definitions(name, "msg", library, report)
-        for each in found["msg", text]:
-            todo.extend(("msg", nested) for nested in _nested(each))
+        for definition in found["msg", text]:
+            todo.extend(("msg", nested) for nested in _nested(definition))
     while todo:
         kind, text = todo.pop()
         if (kind, text) not in found:
             found[kind, text] = find_definitions(text, kind, library, report)
-            for each in found[kind, text]:
-                todo.extend(("msg", name) for name in _nested(each))
-    return {key: each for key, each in found.items() if each}
+            for definition in found[kind, text]:
+                todo.extend(("msg", name) for name in _nested(definition))
+    return {key: row for key, row in found.items() if row}
 
 
 def with_fields(
@@ -187,7 +189,7 @@ def with_fields(
         found = find_definitions(f"{definition.package}/{name}", kind, library)
         if not found:
             return None
-        if all(each.part(part).field(field) for each in found for field in fields):
+        if all(definition.part(part).field(field) for definition in found for field in fields):
             fitting.append(found[0])
     return fitting[0] if len(fitting) == 1 else None
 
@@ -208,7 +210,11 @@ def other_types_of(base: State, found: Definitions, library: Library) -> OtherTy
             definitions = found.get((kind, text))
             for part in PARTS[kind] if definitions else ():
                 fields = given_fields(state.variables, part)
-                known = [each.part(part).field(one) for each in definitions or () for one in fields]
+                known = [
+                    definition.part(part).field(one)
+                    for definition in definitions or ()
+                    for one in fields
+                ]
                 if all(known) or not definitions or (text, fields) in others:
                     continue
                 other = with_fields(definitions[0], part, fields, library)
@@ -247,8 +253,8 @@ def _called_messages(base: State, library: Library) -> dict[str, str]:
         todo += state.states
         data = [held.value.data for held in state.variables]
         data += [preset.value.data for preset in state.userdata]
-        codes = [each.text if isinstance(each, Expression) else each for each in data]
-        texts = [each for each in codes if isinstance(each, str) and len(each) <= MOST_CODE]
+        codes = [value.text if isinstance(value, Expression) else value for value in data]
+        texts = [code for code in codes if isinstance(code, str) and len(code) <= MOST_CODE]
         words |= dict.fromkeys(word for text in texts for word in _CALLED.findall(text))
     found = {word: word for word in words if "." in word}
     code = base.type.code.get("python", f"{base.type.name}.tpl.py")
@@ -263,8 +269,8 @@ def _called_messages(base: State, library: Library) -> dict[str, str]:
 
 def _nested(definition: Definition) -> list[str]:
     """The names of the messages in the fields of a definition."""
-    fields = [each for message in definition.messages for each in message.fields]
-    return [each.type.name for each in fields if each.type.name not in PRIMITIVES]
+    fields = [field for message in definition.messages for field in message.fields]
+    return [field.type.name for field in fields if field.type.name not in PRIMITIVES]
 
 
 def _readings(facts: ClassFacts) -> Iterator[tuple[DefinitionKind, str, str]]:
@@ -310,18 +316,18 @@ def missing_type(word: TypeName, kind: DefinitionKind, library: Library) -> Miss
         action = TypeName(word.package, word.name[: made.start()])
         if not is_listed(word.package, library) or find_definitions(str(action), "action", library):
             return None
-        names += [f"{each}{made[1]}" for each in _names_in(word.package, "action", library)]
+        names += [f"{name}{made[1]}" for name in _names_in(word.package, "action", library)]
     files = library.definition_names(f"{word.package}/{kind}")
     if word.name in names or f"{word.name}.idl" in files:
         return None
     kinds: list[DefinitionKind] = [
-        each for each in PARTS if find_definitions(str(word), each, library)
+        part for part in PARTS if find_definitions(str(word), part, library)
     ]
     other = kinds[0] if kinds else None
     if not names and other is None and not is_listed(word.package, library):
         return None
     packages = packages_with(word.name, kind, library.ros) if other is None else []
-    packages = [each for each in packages if each != word.package]
+    packages = [package for package in packages if package != word.package]
     return Missing(tuple(sorted(names)), other, tuple(packages))
 
 
@@ -337,7 +343,7 @@ def _names_in(package: str, kind: DefinitionKind, library: Library) -> list[str]
     """The names of the types of a kind in a package, all of them or none."""
     files = library.definition_names(f"{package}/{kind}")
     if files:
-        return [each.removesuffix(f".{kind}") for each in files if each.endswith(f".{kind}")]
+        return [file.removesuffix(f".{kind}") for file in files if file.endswith(f".{kind}")]
     return standard_package(package, library.ros).names(kind) if is_listed(package, library) else []
 
 

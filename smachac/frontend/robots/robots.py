@@ -70,9 +70,9 @@ def _body_names(tree: Tree) -> Iterator[Word]:
     for part in tree.entries if isinstance(tree, Map) else ():
         inner = part.value
         if isinstance(part.key, Scalar) and part.key.value == "bodies" and isinstance(inner, Map):
-            for each in inner.entries:
-                if isinstance(each.key, Scalar) and isinstance(each.key.value, str):
-                    yield Word(each.key.value, each.key.span)
+            for entry in inner.entries:
+                if isinstance(entry.key, Scalar) and isinstance(entry.key.value, str):
+                    yield Word(entry.key.value, entry.key.span)
 
 
 def default_robot(base: StateType, library: Library) -> Robot | None:
@@ -425,19 +425,19 @@ class _Reader:
                 return None
             found.append((part, robot))
         arms: dict[str, Arm] = {}
-        for part, each in found:
-            for arm in _arms(part, each, data):
+        for part, other in found:
+            for arm in _arms(part, other, data):
                 if arm.name in arms:
                     help = "give one of the two parts another name"
                     error = DataError(f"there are two arms `{arm.name}`", part.place, help)
                     self.mistake(word, tree, error, "robot")
                     return None
                 arms[arm.name] = arm
-        joints = {joint.name: joint for _, each in found for joint in each.joints}
+        joints = {joint.name: joint for _, robot in found for joint in robot.joints}
         return Robot(
             name=data.name,
             joints=tuple(joints.values()),
-            limbs=tuple(limb for _, each in found for limb in each.limbs),
+            limbs=tuple(limb for _, robot in found for limb in robot.limbs),
             arms=tuple(arms.values()),
             base=data.base,
             description=word.text,

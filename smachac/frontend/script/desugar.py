@@ -89,7 +89,7 @@ def _pause(name: str, seconds: Value, node: Node, reads: tuple[Key, ...] = ()) -
         name=name,
         type=TIMER,
         inputs=reads,
-        outcomes=tuple(Outcome(name=each, span=node.span) for each in ("succeeded", PREEMPTED)),
+        outcomes=tuple(Outcome(name=text, span=node.span) for text in ("succeeded", PREEMPTED)),
         variables=(Variable(name="time", role="duration", value=seconds, span=seconds.span),),
         blocking=True,
         built_in=TIMER,
@@ -212,7 +212,7 @@ def _repeated(node: Node, loop: ForEach) -> Iterator:
     if not loop.item:  # any of them can be the item
         fields["inputs"] = tuple(replace(key, type=optional(key.type)) for key in node.inputs)
     fields["remaps"] = tuple(remap for remap in node.remaps if remap.key != item)
-    kept = tuple(each for each in node.outcomes if each.name not in on[1:])
+    kept = tuple(outcome for outcome in node.outcomes if outcome.name not in on[1:])
     exhausted = _fresh(EXHAUSTED, own)
     items_key = ""
     if isinstance(items.data, str):

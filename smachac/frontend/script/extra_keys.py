@@ -22,7 +22,7 @@ def _known(type_: StateType, part: str) -> list[str]:
         "outcomes": type_.outcomes,
     }
     optional = {"input_keys": type_.listed_inputs, "output_keys": type_.listed_outputs}
-    return [*(each.name for each in declared[part]), *optional.get(part, ())]
+    return [*(item.name for item in declared[part]), *optional.get(part, ())]
 
 
 def check_interface(read: Mapping[str, Any], type_: StateType, report: Report) -> None:
@@ -33,7 +33,7 @@ def check_interface(read: Mapping[str, Any], type_: StateType, report: Report) -
         known = _known(type_, part)
         if part == "outcomes":
             outcomes: tuple[Outcome, ...] = read[part]
-            words = [Word(each.name, each.span) for each in outcomes]
+            words = [Word(outcome.name, outcome.span) for outcome in outcomes]
         else:
             keys: Keys = read[part]
             words = [word for word, _ in keys]

@@ -55,7 +55,7 @@ class KeptCall(NamedTuple):
 
 def same_objects(one: Mapping[str, object], other: Mapping[str, object]) -> bool:
     """Whether two mappings have the same objects under the same names, with the same places."""
-    return one.keys() == other.keys() and all(other[name] is each for name, each in one.items())
+    return one.keys() == other.keys() and all(other[name] is value for name, value in one.items())
 
 
 @dataclass(slots=True)

@@ -173,7 +173,7 @@ def _part(state: State, found: re.Match[str]) -> str:
     dot, name = found.groups()
     if name in schema.VARIABLES:
         return found[0]
-    value = next((each.value for each in state.variables if each.name == name), None)
+    value = next((variable.value for variable in state.variables if variable.name == name), None)
     known = state.type.variables.get(name)
     if value is None and known is not None:
         value = known.default
@@ -221,8 +221,8 @@ def _given_outcomes(state: State) -> list[Outcome]:
         if not state.outcomes:
             return []
         names = {key.text for key, _ in state.transitions}
-        names.update(each.name for each in type_.outcomes)
-        return [each for each in state.outcomes if each.name in names]
+        names.update(outcome.name for outcome in type_.outcomes)
+        return [outcome for outcome in state.outcomes if outcome.name in names]
     given = [*state.outcomes]
     if state.default_outcome is not None:
         given.append(_outcome(state.default_outcome))
@@ -264,7 +264,7 @@ def _without_optional(child: Node, state: State, outcomes: frozenset[str]) -> No
         return child
     led = {edge.outcome for edge in child.transitions} | outcomes
     dropped = state.type.optional - led
-    kept = tuple(each for each in child.outcomes if each.name not in dropped)
+    kept = tuple(outcome for outcome in child.outcomes if outcome.name not in dropped)
     return child if len(kept) == len(child.outcomes) else replace(child, outcomes=kept)
 
 
@@ -366,7 +366,7 @@ def _with_implicit(child: Node, outcomes: frozenset[str]) -> Node:
 
     docs/semantics.md, Steps and transitions.
     """
-    names = [each.name for each in child.outcomes if each.name in outcomes]
+    names = [outcome.name for outcome in child.outcomes if outcome.name in outcomes]
     if not names:
         return child
     own = {transition.outcome for transition in child.transitions}
@@ -464,11 +464,11 @@ def presets(state: State) -> tuple[Preset, ...]:
     """The userdata of a container, its own and that of its leaves: the last value of each key."""
     found: dict[str, Preset] = {}
     given: dict[str, list[Given]] = {}
-    for each in (state, *(child for child in state.states if child.owner == "state")):
-        for preset in each.userdata:
+    for child in (state, *(child for child in state.states if child.owner == "state")):
+        for preset in child.userdata:
             found[preset.key] = preset
             given.setdefault(preset.key, []).append(
-                Given(each.name, preset.value, preset.span, each is state)
+                Given(child.name, preset.value, preset.span, child is state)
             )
     return tuple(
         replace(preset, given=tuple(given[key])) if len(given[key]) > 1 else preset
@@ -514,20 +514,25 @@ def _with_error_transition(node: Node, target: Word) -> Node:
 def _with_conditions(leaf: Leaf, conditions: VariableType) -> Leaf:
     """A leaf whose outcomes have conditions: the input key named like an outcome is its condition,
     if it has no other (SMACHA's rule)."""
-    known = {each.name: each for each in leaf.variables}
+    known = {variable.name: variable for variable in leaf.variables}
     held = known.get(conditions.name)
     given = held.value.data if held is not None else Struct(entries=())
     if leaf.open or not isinstance(given, Struct):
         return leaf
     inputs = {key.name for key in leaf.inputs} - {name for name, _ in given.entries}
-    keyed = [each for each in leaf.outcomes if each.name in inputs and each.name.isidentifier()]
+    keyed = [
+        outcome
+        for outcome in leaf.outcomes
+        if outcome.name in inputs and outcome.name.isidentifier()
+    ]
     if not keyed and held is not None:
         return leaf
     code = [
-        (each.name, Expression(text=f"lambda ud: ud.{each.name}", span=each.span)) for each in keyed
+        (outcome.name, Expression(text=f"lambda ud: ud.{outcome.name}", span=outcome.span))
+        for outcome in keyed
     ]
     span = keyed[0].span if keyed else leaf.span
     value = Value(data=Struct(entries=(*given.entries, *code)), span=span)
     made = Variable(name=conditions.name, role=conditions.role, value=value, span=span)
-    others = [each for each in leaf.variables if each.name != conditions.name]
+    others = [variable for variable in leaf.variables if variable.name != conditions.name]
     return replace(leaf, variables=(made, *others))

@@ -35,7 +35,7 @@ def outcomes_used(entries: Mapping[str, Entry]) -> tuple[Outcome, ...]:
 def _keys(entry: Entry | None) -> Iterator[Word]:
     """The keys of a mapping that are names."""
     if entry is not None and isinstance(entry.value, Map):
-        words = (name_of(each.key) for each in entry.value.entries)
+        words = (name_of(item.key) for item in entry.value.entries)
         yield from (word for word in words if word is not None)
 
 
@@ -53,4 +53,6 @@ def _exits(states: Tree) -> Iterator[Word]:
             if schema.LONG.get(key, key) == "transitions":
                 targets += [target for _, target in pairs_of(field.value)]
     guess = guesser(names)
-    yield from (each for each in targets if each.text not in names and not guess.sure(each.text))
+    yield from (
+        target for target in targets if target.text not in names and not guess.sure(target.text)
+    )

@@ -192,8 +192,8 @@ def _unresolved(word: Word, scope: Scope) -> Diagnostic:
         return unresolved_look_up(word, scope, turned)
     places = [*look_ups(call.tree)]
     read = {place.text for place in places}
-    idle = [each for each in call.given if each.text not in read]
-    known = scope.keys() - {each.text for each in idle}
+    idle = [word for word in call.given if word.text not in read]
+    known = scope.keys() - {word.text for word in idle}
     if turned in known or guesser(sorted(known))(word.text) is not None:
         return unresolved_look_up(word, scope, turned)
     places = [place for place in places if place.text == word.text]
@@ -285,7 +285,7 @@ def params_of(entry: Entry | None) -> tuple[Param, ...]:
     if entry is None or not isinstance(entry.value, Map):
         return ()
     return tuple(
-        Param(name=str(each.key.value), value=as_value(each.value)) for each in entry.value.entries
+        Param(name=str(item.key.value), value=as_value(item.value)) for item in entry.value.entries
     )
 
 

@@ -97,7 +97,7 @@ def _is_split(item: Tree, after: Tree) -> bool:
     one property."""
     if not (isinstance(item, Map) and isinstance(after, Map) and item.entries and after.entries):
         return False
-    here, there = ([str(each.key.value) for each in one.entries] for one in (item, after))
+    here, there = ([str(entry.key.value) for entry in one.entries] for one in (item, after))
     return here == ["name"] and there[0] in FORMS and "name" not in there
 
 
@@ -124,7 +124,7 @@ def _dashes(tree: Tree) -> str | None:
     """The help for properties that are written as one mapping, without the dashes of a list."""
     if not isinstance(tree, Map) or not tree.entries:
         return None
-    if any(str(each.key.value) not in FORMS for each in tree.entries):
+    if any(str(entry.key.value) not in FORMS for entry in tree.entries):
         return None
     first = tree.entries[0]
     text = Span(first.key.span.source, first.key.span.start, first.value.span.end).text
@@ -255,16 +255,16 @@ class _Reader:
 
     def whenever(self, tree: Tree) -> Iterator[Form]:
         entries = self.entries(tree, "whenever")
-        limits = {str(each.key.value): each.value for each in entries}
-        pairs = [each for each in entries if each.key.value not in ("within", "before_claim")]
+        limits = {str(entry.key.value): entry.value for entry in entries}
+        pairs = [entry for entry in entries if entry.key.value not in ("within", "before_claim")]
         within, claims, wrong = 0, cast(Atoms, ()), False
         if "within" in limits:
             within = self.within(limits["within"])
             wrong = not within
         if "before_claim" in limits:
             claims = tuple(
-                Atom(subject="claim", name=str(each.value), span=each.span)
-                for each in self.names(limits["before_claim"])
+                Atom(subject="claim", name=str(name.value), span=name.span)
+                for name in self.names(limits["before_claim"])
             )
         if entries and not pairs:
             help = f"write it like {EXAMPLES['whenever']}"
@@ -314,7 +314,7 @@ class _Reader:
     def names(self, tree: Tree) -> list[Scalar]:
         """The scalars of a list of names or of one name."""
         items = tree.items if isinstance(tree, Seq) else (tree,)
-        found = [each for each in items if isinstance(each, Scalar) and each.value is not None]
+        found = [item for item in items if isinstance(item, Scalar) and item.value is not None]
         if len(found) < len(items) or not items:
             help = "write a name, or a list of names: `[PLACE, LET_GO]`"
             self.fault(tree, f"expected the name of a state, found {kind_of(tree)}", help, "names")
@@ -323,7 +323,7 @@ class _Reader:
 
     def atoms(self, tree: Tree) -> Atoms:
         """The atoms of a list or of one atom; none if one of them is wrong."""
-        found = [self.atom(each) for each in self.names(tree)]
+        found = [self.atom(name) for name in self.names(tree)]
         return () if None in found else cast(Atoms, tuple(found))
 
     def atom(self, tree: Scalar) -> Atom | None:
@@ -341,7 +341,7 @@ class _Reader:
             self.fault(tree, message, help, "atom", text)
             return None
         subject, outcome = parsed.children
-        names = [_name(each) for each in subject.children if not hasattr(each, "type")]
+        names = [_name(child) for child in subject.children if not hasattr(child, "type")]
         return Atom(
             subject=cast(Subject, str(subject.data)),
             name="/".join(names),

@@ -242,8 +242,8 @@ class _Resolver:
         if "types" in entries:
             self.uses.types |= explain_aliases(self.aliases, source, self.report)
             self.uses.aliases(entries["types"].value, self.report)
-        known = [each for each in self.types.values() if each is not None]
-        classes = [each.class_facts for each in known if each.class_facts is not None]
+        known = [type_ for type_ in self.types.values() if type_ is not None]
+        classes = [type_.class_facts for type_ in known if type_.class_facts is not None]
         library = replace(self.library, definition_names=cache(self.library.definition_names))
         definitions = definitions_of(base, classes, library, self.report)
         return Script(
@@ -437,7 +437,7 @@ class _Resolver:
             if not isinstance(tree, Map) or not tree.entries:
                 return (no_states(name, around.via),)
         if isinstance(tree, Map):
-            items = tuple(Map((each,), each.key.span) for each in tree.entries)
+            items = tuple(Map((entry,), entry.key.span) for entry in tree.entries)
         found: list[State] = []
         for item in items if owner == "Iterator" else with_further_states(items):
             if self.count >= MAX_STATES:
@@ -534,7 +534,7 @@ class _Resolver:
             and kept.around == around
             and same_objects(kept.scope, around.scope)
             and self.count + kept.states < MAX_STATES
-            and all(self.text(*each) is source for each, source in kept.texts.items())
+            and all(self.text(*name) is source for name, source in kept.texts.items())
             and all(self.state_type(name) is type_ for name, type_ in kept.types.items())
         )
 
@@ -570,7 +570,9 @@ class _Resolver:
             around = replace(around, source=source, calls=calls, inner=inner)
             fields = expanded(entries, self.report)
             self.uses.replaced(fields, own)
-            given = tuple(Word(str(each.key.value), each.key.span) for each in _entries_of(params))
+            given = tuple(
+                Word(str(entry.key.value), entry.key.span) for entry in _entries_of(params)
+            )
             scope = Scope(around.scope)
             scope.call = Call(name.text, Word(word.text, call), tree, given, around.scope.call)
             around = replace(around, scope=scope)
@@ -585,7 +587,7 @@ class _Resolver:
         beside = [key for key, entry in own.items() if entry.key.span.source is not around.source
                   and key not in schema.VARIABLES and key not in around.scope]  # fmt: skip
         params = _entries_of(own["params"].value if "params" in own else None)
-        known = {each.key.value for each in params}
+        known = {param.key.value for param in params}
         values = [entry.value for entry in own.values()] if beside else []
         read = {word.text for value in values for word in look_ups(value)}
         found = {key: own[key] for key in beside if key in read and key not in known}
@@ -673,7 +675,7 @@ class _Resolver:
         """A type that the script need not use; its faults are not reported. None for a built-in one
         whose interface does not have all these words, or that has no interface."""
         library = self.library
-        if not any(library.own_template(each.format(name)) for each in ("{}.yml", *TEMPLATE_FILES)):
+        if not any(library.own_template(file.format(name)) for file in ("{}.yml", *TEMPLATE_FILES)):
             interface = library.template(f"{name}.yml")
             if interface is None or not all(word in interface.text for word in words):
                 return None
@@ -698,7 +700,7 @@ class _Resolver:
             word = Word("Base", name.span)
         if entry is None and role != "base":
             caller = around.source.name
-            open_ = {PurePath(each).stem for each in (caller, *(name for name, _ in around.calls))}
+            open_ = {PurePath(text).stem for text in (caller, *(name for name, _ in around.calls))}
             scripts = [n for n in self.library.script_names(caller) if n not in open_]
             types = self.known_templates()[1]
             shown, calls = around.inner or name, around.via if around.inner is not None else ()
@@ -752,7 +754,7 @@ def one_for_each_name(found: Report) -> Report:
         groups.setdefault(key, []).append(item)
     kept: Report = []
     for first, *others in groups.values():
-        places = dict.fromkeys(each.span for each in others if each.span != first.span)
+        places = dict.fromkeys(other.span for other in others if other.span != first.span)
         more = [Related(span=span, message="the same here") for span in places][:MOST_PLACES]
         finding = replace(first.finding, related=(*first.finding.related, *more))
         kept.append(replace(first, finding=finding) if more else first)

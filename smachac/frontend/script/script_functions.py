@@ -36,7 +36,7 @@ def functions_of(
         return {}
     found: dict[str, FunctionFacts] = {}
     for text in dict.fromkeys(_names(base)):
-        facts = next((each for each in _facts(text, modules, library) if each is not None), None)
+        facts = next((fact for fact in _facts(text, modules, library) if fact is not None), None)
         if facts is not None:
             found[text] = facts
     return found
@@ -55,8 +55,8 @@ def _names(base: State) -> Iterator[str]:
 def _names_in(data: Data) -> Iterator[str]:
     match data:
         case Struct(entries=entries):
-            for _, each in entries:
-                yield from _names_in(each)
+            for _, value in entries:
+                yield from _names_in(value)
         case str() | Expression():
             text = data if isinstance(data, str) else data.text
             text = text.strip("` ")
@@ -108,9 +108,11 @@ def _function(module: Module, function: ast.FunctionDef, library: Library) -> Fu
     unknown = OwnClass(classes=(), names=(), root="unknown")
     first = positional[0].arg if positional else ""
     flow = Flows(unknown, library).of(module, function, first) if first else None
-    values = [each.value for each in returns_of(function.body) if each.value is not None]
+    values = [
+        returned.value for returned in returns_of(function.body) if returned.value is not None
+    ]
     ends = not isinstance(function.body[-1], ast.Raise)
-    parameters = tuple(each.arg for each in positional)
+    parameters = tuple(argument.arg for argument in positional)
     own = set(own_names(function.body, parameters))
     places = _places(module, function)
     word = Word(function.name, name_span(text, function))
@@ -121,7 +123,9 @@ def _function(module: Module, function: ast.FunctionDef, library: Library) -> Fu
         least=len(positional) - len(given.defaults),
         most=None if given.vararg is not None else len(positional),
         silent=not values and ends and not _is_sketch(function),
-        results=tuple(result_of(one, own, places) for each in values for one in alternatives(each)),
+        results=tuple(
+            result_of(one, own, places) for value in values for one in alternatives(value)
+        ),
         reads=flow.reads if flow is not None else (),
         writes=flow.writes if flow is not None else (),
         used=_used(function),
@@ -131,20 +135,20 @@ def _function(module: Module, function: ast.FunctionDef, library: Library) -> Fu
 
 def _used(function: ast.FunctionDef) -> tuple[str, ...]:
     """The parameters of a function that its body reads."""
-    read = {each.id for line in function.body for each in ast.walk(line)
-            if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Load)}  # fmt: skip
+    read = {node.id for line in function.body for node in ast.walk(line)
+            if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}  # fmt: skip
     given = [*function.args.posonlyargs, *function.args.args]
-    return tuple(each.arg for each in given if each.arg in read)
+    return tuple(argument.arg for argument in given if argument.arg in read)
 
 
 def _places(module: Module, function: ast.FunctionDef) -> Callable[[ast.expr], Span]:
     """The spans of the expressions in a function: of one in a formatted text that of this text,
     where Python gives no exact place."""
     formatted = {
-        each: text
+        node: text
         for text in _nodes(function)
         if isinstance(text, ast.JoinedStr)
-        for each in ast.walk(text)
+        for node in ast.walk(text)
     }
 
     def place(node: ast.expr) -> Span:
@@ -158,7 +162,7 @@ def _places(module: Module, function: ast.FunctionDef) -> Callable[[ast.expr], S
 
 def _nodes(function: ast.FunctionDef) -> list[ast.AST]:
     """The parts of the body of a function, in the order of its lines."""
-    return [each for line in function.body for each in ast.walk(line)]
+    return [node for line in function.body for node in ast.walk(line)]
 
 
 def _head(module: Module, positional: Sequence[ast.arg]) -> Span | None:
@@ -174,7 +178,7 @@ def _head(module: Module, positional: Sequence[ast.arg]) -> Span | None:
 def _is_sketch(function: ast.FunctionDef) -> bool:
     """Whether a function is not written yet: it has no code but a text or `...`."""
     return all(
-        isinstance(each, ast.Pass)
-        or (isinstance(each, ast.Expr) and isinstance(each.value, ast.Constant))
-        for each in function.body
+        isinstance(node, ast.Pass)
+        or (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant))
+        for node in function.body
     )

@@ -103,7 +103,7 @@ def field_table(names: Collection[str], owner: FieldOwner, type_: StateType) -> 
     own, known = schema.OWN_FIELDS[owner], type_.variables
     required = [*schema.REQUIRED[owner], *(key for key in known if known[key].required)]
     given = [(key, variable) for key, variable in known.items() if key in names]
-    keys = [(key, each) for key, each in given if each.keys in ("input", "output")]
+    keys = [(key, type_) for key, type_ in given if type_.keys in ("input", "output")]
     if owner == "base":
         called = [key for key in (*_BASE_VARIABLES, *known) if key in names]
     else:
@@ -118,9 +118,11 @@ def field_table(names: Collection[str], owner: FieldOwner, type_: StateType) -> 
         shapes=tuple(row for row in shapes if row[0] not in _READ_ELSEWHERE),
         missing=tuple(key for key in required if key not in names),
         variables=tuple((key, known.get(key)) for key in called),
-        lists=tuple(key for key, each in keys if each.type == ANY),
-        listed=tuple((f"{each.keys}_keys", key) for key, each in keys),
-        unquoted=tuple((key, each) for key, each in given if each.unquoted or each.role == "qos"),
+        lists=tuple(key for key, type_ in keys if type_.type == ANY),
+        listed=tuple((f"{type_.keys}_keys", key) for key, type_ in keys),
+        unquoted=tuple(
+            (key, type_) for key, type_ in given if type_.unquoted or type_.role == "qos"
+        ),
     )
 
 
@@ -183,8 +185,8 @@ def _meant_booleans(steps: Pairs, type_: StateType, report: Report, begin: int) 
     """The transitions, with the outcomes `true` and `false` of the type in place of other words for
     booleans, such as `yes`; the help of their finding (SM004) has the outcome that is meant. The
     findings of this state begin at the number `begin`."""
-    names = {each.name for each in type_.outcomes}
-    places = {each.span: number for number, each in enumerate(report[begin:], begin)}
+    names = {outcome.name for outcome in type_.outcomes}
+    places = {diagnostic.span: number for number, diagnostic in enumerate(report[begin:], begin)}
     found: list[tuple[Word, Word]] = []
     for word, target in steps:
         meant = YAML_1_1_BOOLEANS.get(word.text, "")
@@ -223,7 +225,9 @@ def with_meant_fields(
         return entries
     guess = guesser_of((*schema.names_for(owner), *type_.variables))
     meant = {guess.sure(str(entries[key].key.value)): entries[key] for key in reversed(unknown)}
-    roles: dict[str, str] = {each.role: name for name, each in type_.variables.items() if each.role}
+    roles: dict[str, str] = {
+        variable.role: name for name, variable in type_.variables.items() if variable.role
+    }
     meant |= {roles[key]: entries[key] for key in unknown if key in roles}
     other = next((entries[key] for key in unknown if key in TEMPLATE_WORDS), None)
     if other is not None and owner != "base":
@@ -298,7 +302,7 @@ def _known_fields(
                 continue
             whose = _owner_of(owner, type_, of_type=owner == "state")
             own = [*type_.variables]
-            also = [name for name, each in entries.items() if each is entry and name != key]
+            also = [name for name, item in entries.items() if item is entry and name != key]
             sure = also[0] if also else None
             as_key = _as_key(word, entry, entries, type_)
             help = f"`{word.text}` is an input key: {as_key}" if as_key is not None else None
@@ -401,9 +405,9 @@ def _one_name(key: str, entry: Entry) -> str | None:
     """The help for a list or a mapping in place of one name: the only name in it, or where several
     can be written."""
     value = entry.value
-    trees = [each.value for each in value.entries] if isinstance(value, Map) else []
+    trees = [entry.value for entry in value.entries] if isinstance(value, Map) else []
     trees = [*value.items] if isinstance(value, Seq) else trees
-    words = [name_of(each) for each in trees]
+    words = [name_of(tree) for tree in trees]
     if len(words) == 1 and words[0] is not None:
         return f"write one name: `{entry.key.value}: {words[0].text}`"
     return _SEVERAL.get(key)
@@ -421,7 +425,7 @@ _SEVERAL = {
 def _outcomes(entries: Entries, type_: StateType) -> set[str]:
     """The names of the outcomes that a state has."""
     given = as_outcomes(entries["outcomes"].value, []) if "outcomes" in entries else ()
-    return {each.name for each in (*type_.outcomes, *given)}
+    return {outcome.name for outcome in (*type_.outcomes, *given)}
 
 
 def _report_missing(
@@ -448,7 +452,7 @@ def _report_missing(
         variable = type_.variables.get(key)
         example = _example(variable) if variable is not None else ""
         if key == "outcomes" and read.get(key):
-            example = f"[{', '.join(each.name for each in read[key])}]"
+            example = f"[{', '.join(item.name for item in read[key])}]"
         params = entries.get("params")
         entry = params.value.get(key) if params and isinstance(params.value, Map) else None
         help = _with_type(key, variable)
@@ -479,7 +483,7 @@ def _example(variable: VariableType) -> str:
     """A value that the variable can have; empty if there is no short one."""
     limits = variable.limits
     if variable.unquoted == "function" and variable.arguments:
-        names = ("ud" if each == "userdata" else each for each in variable.arguments)
+        names = ("ud" if argument == "userdata" else argument for argument in variable.arguments)
         return f"'lambda {', '.join(names)}: True'"
     if variable.type.name == "one_of":
         return written_name(str(variable.type.args[0]))
@@ -551,7 +555,7 @@ def _check_qos(tree: Tree, report: Report) -> None:
     if isinstance(tree, Scalar):
         value = tree.value
     elif isinstance(tree, Map):
-        value = {str(each.key.value): getattr(each.value, "value", ()) for each in tree.entries}
+        value = {str(entry.key.value): getattr(entry.value, "value", ()) for entry in tree.entries}
     for fault in faults(value):
         help = "write a preset such as `sensor_data`, a depth, or policies such as"
         help += " `{reliability: best_effort, durability: volatile, depth: 5}`"
@@ -562,7 +566,7 @@ def _check_qos(tree: Tree, report: Report) -> None:
         elif entry is not None and fault.key not in (*POLICIES, "preset"):
             place = entry.key
         if fault.known:
-            listed = ", ".join(f"`{each}`" for each in fault.known)
+            listed = ", ".join(f"`{text}`" for text in fault.known)
             choice = f"write one of {listed}" if entry is not None else help
             help = did_you_mean(place.span.text.strip("\"'"), fault.known) or choice
         effect = "ROS 2 has no such quality of service: the program could not use the topic"
@@ -612,9 +616,9 @@ def with_further_states(items: tuple[Tree, ...]) -> Iterator[Tree]:
         if not isinstance(item, Map) or len(item.entries) < 2:
             continue
         if isinstance(item.entries[0].value, Map):
-            for each in item.entries[1:]:
-                if isinstance(each.value, Map) and not is_field(each):
-                    yield Map((each,), each.key.span)
+            for entry in item.entries[1:]:
+                if isinstance(entry.value, Map) and not is_field(entry):
+                    yield Map((entry,), entry.key.span)
 
 
 def second_key(name: Word, fields: Map, other: Entry) -> Diagnostic:

@@ -113,8 +113,11 @@ def read_sugar(
     if for_each is not None and wrong_loop and PREEMPTED not in {*own, *used}:
         for_each = replace(for_each, preempted=False)
     sugar = Sugar(timeout=timeout, retry=retry, for_each=for_each)
-    failing = [each.name for each in (*type_.outcomes, *outcomes)
-               if (is_failure(each.name) if each.failure is None else each.failure)]  # fmt: skip
+    failing = [
+        outcome.name
+        for outcome in (*type_.outcomes, *outcomes)
+        if (is_failure(outcome.name) if outcome.failure is None else outcome.failure)
+    ]
     return _with_known_outcomes(sugar, own, _Uses(led, failing), report)
 
 
@@ -124,14 +127,14 @@ def _move_limit(fields: dict[str, Entry], report: Report) -> None:
     for name in ("retry", "for_each"):
         entry = fields.get(name)
         inner = entry.value.entries if entry is not None and isinstance(entry.value, Map) else ()
-        inside = [each for each in inner if each.key.value == "timeout"]
+        inside = [entry for entry in inner if entry.key.value == "timeout"]
         if entry is None or len(inside) != 1 or "timeout" in fields:
             continue
         limit = inside[0]
         owner = Owner(name, f"`{name}`", "part")
         help = f"write `timeout: {limit.value.span.text}` beside `{name}`"
         report.append(unknown_variable(Word("timeout", limit.key.span), owner, (), help=help))
-        rest = tuple(each for each in inner if each is not limit)
+        rest = tuple(entry for entry in inner if entry is not limit)
         fields |= {name: replace(entry, value=Map(rest, entry.value.span)), "timeout": limit}
 
 
@@ -186,7 +189,7 @@ def _known(
         if word.text in (*outcomes, ERROR):
             found.append(word)
             continue
-        given = {each.text for each in on}
+        given = {word.text for word in on}
         left = [name for name in outcomes if name not in given]
         fitting = _fitting(outcomes, uses.failing, field)
         others = [name for name in left if name not in uses.led]
@@ -195,7 +198,7 @@ def _known(
             found += [Word(name, word.span) for name in others[:1]]
             continue
         message = f"this state has no outcome `{word.text}`"
-        help = _other_outcome(word.text, [each.text for each in on], outcomes, uses, field)
+        help = _other_outcome(word.text, [word.text for word in on], outcomes, uses, field)
         effect = f"its outcomes are {listed(outcomes)}" if outcomes else None
         arguments = ("outcome", word.text)
         report.append(wrong_shape(word.span, message, help, arguments=arguments, effect=effect))
@@ -339,13 +342,15 @@ def _parts(
     owner = Owner(str(entry.key.value), f"`{entry.key.value}`", "part")
     parts: dict[str, Tree] = {}
     entries = entry.value.entries
-    written = {str(each.key.value) for each in entries}
-    paired = _paired([each for each in entries if each.key.value not in known], written, required)
+    written = {str(entry.key.value) for entry in entries}
+    paired = _paired(
+        [entry for entry in entries if entry.key.value not in known], written, required
+    )
     found: Report = []
-    for each in entries:
-        word = Word(str(each.key.value), each.key.span)  # `on` is fine here, unlike in names
+    for item in entries:
+        word = Word(str(item.key.value), item.key.span)  # `on` is fine here, unlike in names
         if word.text in known:
-            parts[word.text] = each.value
+            parts[word.text] = item.value
             continue
         others = tuple(name for name in known if name not in written)
         meant = _part_meant(word.text, others)
@@ -353,14 +358,14 @@ def _parts(
             report.append(
                 unknown_variable(word, owner, others, Choice(likely=paired, required=paired))
             )
-            parts[paired] = each.value
+            parts[paired] = item.value
             continue
         if meant is None:
             report.append(unknown_variable(word, owner, others))
             continue
         lost = meant if meant in required and meant not in written else None
         found.append(unknown_variable(word, owner, known, Choice(meant=meant, required=lost)))
-        parts.setdefault(meant, each.value)
+        parts.setdefault(meant, item.value)
     report += _as_one(entry, found, required)
     for name, example in required.items():
         if name not in parts:
@@ -370,7 +375,7 @@ def _parts(
 
 def _as_one(entry: Entry, found: Report, required: Mapping[str, str]) -> Report:
     """One finding for several other words for different parts, with the mapping as it is meant."""
-    edits = sorted((edit for each in found for edit in each.finding.edits),
+    edits = sorted((edit for diagnostic in found for edit in diagnostic.finding.edits),
                    key=lambda edit: edit.span.start)  # fmt: skip
     parts = {edit.text: None for edit in edits}
     value = entry.value.span
@@ -381,16 +386,17 @@ def _as_one(entry: Entry, found: Report, required: Mapping[str, str]) -> Report:
         text += value.source.text[at : edit.span.start] + edit.text
         at = edit.span.end
     text += value.source.text[at : value.end]
-    first, *others = [each.finding for each in found]
+    first, *others = [diagnostic.finding for diagnostic in found]
     lost = [part for part in parts if part in required]
     missing = f"; {both(lost)}, which are required, are missing" if len(lost) > 1 else ""
     one = replace(
         first,
-        message=f"{both(each.span.text for each in found)} are not parts of `{entry.key.value}`",
+        message=f"{both(diagnostic.span.text for diagnostic in found)} are not parts of"
+        f" `{entry.key.value}`",
         help=f"write `{entry.key.value}: {text}`",
         effect=f"no code reads fields of these names{missing}",
         edits=tuple(edits),
-        related=tuple(Related(span=each.span, message="and here") for each in others),
+        related=tuple(Related(span=other.span, message="and here") for other in others),
     )
     return [replace(found[0], finding=one)]
 
@@ -428,7 +434,7 @@ def _pair_for(entry: Entry) -> str | None:
     sentence = _SENTENCE.fullmatch(str(entries[0].key.value))
     if sentence is not None and len(entries) == 1:
         return f"write `for_each: {{item: {sentence[1]}, in: {sentence[2]}}}`"
-    (word, *others), items = [str(each.key.value) for each in entries], entries[0].value.span.text
+    (word, *others), items = [str(entry.key.value) for entry in entries], entries[0].value.span.text
     parts = ("in", "item", "on")
     if any(name in parts or _part_meant(name, parts) for name in (word, *others)):
         return None
@@ -503,8 +509,8 @@ def _for_each(entry: Entry, inputs: tuple[str, ...], report: Report) -> ForEach:
     """The loop. Wrong or missing parts are reported; the item has no name then, so that nothing
     follows from it. `inputs` are the input keys of the state."""
     value = entry.value
-    given = [each.value for each in value.entries] if isinstance(value, Map) else [value]
-    used = {each.value for each in given if isinstance(each, Scalar)}
+    given = [entry.value for entry in value.entries] if isinstance(value, Map) else [value]
+    used = {scalar.value for scalar in given if isinstance(scalar, Scalar)}
     names = [key for key in inputs if key not in used]
     required = {"item": names[0] if len(names) == 1 else "NAME", "in": "KEY"}
     before = len(report)

@@ -65,13 +65,13 @@ def type_of_other_framework(
     if len(names) > MOST_TYPES:
         return ""
     types = (find(name, (word,)) for name in names)
-    type_ = next((each for each in types if each and word in each.other_names), None)
+    type_ = next((type_ for type_ in types if type_ and word in type_.other_names), None)
     if type_ is None:
         return ""
     steps = pairs_of(entries["transitions"].value) if "transitions" in entries else ()
     used = [*entries, *(outcome.text for outcome, _ in steps)]
     renamed = type_.other_names[word]
-    changes = [f"`{renamed[each]}` in place of `{each}`" for each in used if each in renamed]
+    changes = [f"`{renamed[text]}` in place of `{text}`" for text in used if text in renamed]
     return f"write `template: {type_.name}`" + (f", with {', '.join(changes)}" if changes else "")
 
 
@@ -115,7 +115,7 @@ def missing_template_help(
 ) -> str | None:
     """The help for a state without a template: the sub-script of its name, else the types that have
     the names that it uses; None if there are neither. `scripts` are the names of sub-scripts."""
-    script = next((each for each in scripts if each.casefold() == name.casefold()), None)
+    script = next((script for script in scripts if script.casefold() == name.casefold()), None)
     if script is not None:
         return f"add `script: {script}`, or `template: TYPE` if it is no call of that sub-script"
     kind, field = _only_kind(entries)
@@ -126,7 +126,7 @@ def missing_template_help(
         return None
     several = len(types) > 1
     has = "these types have" if several else "this type has"
-    return f"add {either(f'template: {each}' for each in types)}: {has} {listed(used)}"
+    return f"add {either(f'template: {type_}' for type_ in types)}: {has} {listed(used)}"
 
 
 def _only_kind(entries: Iterable[str]) -> tuple[str, str]:
@@ -143,7 +143,7 @@ def missing_template(
     state: Word, calls: Sequence[Span], entries: Mapping[str, Entry], help: str | None
 ) -> Diagnostic:
     """SM005 for a state without a template. `calls` are those of sub-scripts that lead to it."""
-    related = tuple(Related(span=each, message=CALLED_HERE) for each in calls)
+    related = tuple(Related(span=call, message=CALLED_HERE) for call in calls)
     owner = Owner(state.text, f"`{state.text}`")
     place, help = state.span, f"{help or 'add `template: TYPE`'}; `smachac states` lists the types"
     edits: tuple[Edit, ...] = ()
@@ -162,6 +162,6 @@ def _has(type_: StateType, used: Iterable[str], ends: Iterable[str]) -> bool:
     """Whether a type declares these variables or keys, and these outcomes."""
     if type_.kind != "state" or type_.open or type_.any_variable:
         return False
-    keys = {each.name for each in (*type_.input_keys, *type_.output_keys)}
-    outcomes = {each.name for each in type_.outcomes} | {"error", "timeout"}
+    keys = {key.name for key in (*type_.input_keys, *type_.output_keys)}
+    outcomes = {outcome.name for outcome in type_.outcomes} | {"error", "timeout"}
     return keys.union(type_.variables).issuperset(used) and outcomes.issuperset(ends)

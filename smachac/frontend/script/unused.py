@@ -81,10 +81,10 @@ class Uses:
                 continue
             # Those of a called sub-script are in another text: the call can give them.
             known = tuple(sorted(used - given[entry.key.span.source]))
-            kept = {str(each.key.value): each.value.span for each in own.value.entries
-                    if each.key.value in known} if known else {}  # fmt: skip
+            kept = {str(entry.key.value): entry.value.span for entry in own.value.entries
+                    if entry.key.value in known} if known else {}  # fmt: skip
             self.found.append(Unused("param", Word(name, entry.key.span), via, known, kept))
-            self.anchored[entry.key.span] = [each.span for each in _inside(entry.value)]
+            self.anchored[entry.key.span] = [node.span for node in _inside(entry.value)]
 
     def replaced(self, inner: Mapping[str, Entry], call: Mapping[str, Entry]) -> None:
         """Count the params of a sub-script that its own fields use, of which the call replaces
@@ -117,18 +117,18 @@ class Uses:
         """
         if not self.found:
             return ()
-        places = Counter(each.span for tree in self.trees.values() for each in _inside(tree))
+        places = Counter(node.span for tree in self.trees.values() for node in _inside(tree))
         repeated = {
             span
             for span, inside in self.anchored.items()
-            if any(places[each] > 1 for each in inside)
+            if any(places[span] > 1 for span in inside)
         }
         names = set(self.looked_up) if has_errors(report) else set()
         of_use = self.defaults | repeated
         return tuple(
-            each
-            for each in self.found
-            if each.word.text not in names and each.word.span not in of_use
+            unused
+            for unused in self.found
+            if unused.word.text not in names and unused.word.span not in of_use
         )
 
 

@@ -31,7 +31,7 @@ def span_at(tree: Tree, place: tuple[str | int, ...], *, key: bool = False) -> S
     span = tree.span
     for step in place:
         if isinstance(tree, Map):
-            entry = next((each for each in tree.entries if str(each.key.value) == step), None)
+            entry = next((entry for entry in tree.entries if str(entry.key.value) == step), None)
             if entry is None:
                 return span
             tree = entry.value

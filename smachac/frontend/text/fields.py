@@ -295,8 +295,8 @@ def as_outcomes(tree: Tree, report: Report) -> tuple[Outcome, ...]:
         words = as_names(tree, report, "outcomes")
         return tuple([Outcome(name=word.text, span=word.span) for word in words])
     if _is_list_in_braces(tree):
-        return tuple(Outcome(name=each.text, span=each.span)
-                     for each in _listed(tree, "outcomes", report))  # fmt: skip
+        return tuple(Outcome(name=word.text, span=word.span)
+                     for word in _listed(tree, "outcomes", report))  # fmt: skip
     rows = ((as_name(entry.key, report), entry.value) for entry in tree.entries)
     return tuple([as_outcome(word, value, report) for word, value in rows if word is not None])
 
@@ -306,8 +306,8 @@ def _is_list_in_braces(tree: Map) -> bool:
     if not tree.entries or not tree.span.text.startswith("{"):
         return False
     values = [entry.value for entry in tree.entries]
-    return all(isinstance(each, Scalar) and each.value is None and each.start == each.end
-               for each in values) and ":" not in tree.span.text  # fmt: skip
+    return all(isinstance(value, Scalar) and value.value is None and value.start == value.end
+               for value in values) and ":" not in tree.span.text  # fmt: skip
 
 
 def _listed(tree: Map, shape: str, report: Report) -> tuple[Word, ...]:
@@ -353,7 +353,7 @@ def as_map(tree: Tree, report: Report, value: str = "...") -> tuple[Entry, ...]:
         ):
             help = spaced(str(tree.value))
         if arrows:
-            shown = ", ".join(f"{each.key.span.text}: {each.value.span.text}" for each in arrows)
+            shown = ", ".join(f"{arrow.key.span.text}: {arrow.value.span.text}" for arrow in arrows)
             help = f"write a mapping: `{{{shown}}}`"
         wrong(tree, "map", report, help)
         return _entries_meant(tree) if isinstance(tree, Seq) else arrows
@@ -376,10 +376,12 @@ def as_pairs(tree: Tree, report: Report) -> Pairs:
     # Most keys are words without signs: a transition is no single word.
     is_word = not entries or str(entries[0].key.value).isidentifier()
     if not is_word and isinstance(tree, Map) and tree.span.text.startswith("{"):
-        arrows = [_arrows(each.key) for each in entries if "\n" not in each.key.span.text]
-        if arrows and len(arrows) == len(entries) and all(len(each) == 1 for each in arrows):
-            entries = tuple(each[0] for each in arrows)
-            shown = ", ".join(f"{each.key.span.text}: {each.value.span.text}" for each in entries)
+        arrows = [_arrows(entry.key) for entry in entries if "\n" not in entry.key.span.text]
+        if arrows and len(arrows) == len(entries) and all(len(arrow) == 1 for arrow in arrows):
+            entries = tuple(arrow[0] for arrow in arrows)
+            shown = ", ".join(
+                f"{entry.key.span.text}: {entry.value.span.text}" for entry in entries
+            )
             message, help = "a `:` is due between a name and its value", f"write `{{{shown}}}`"
             report.append(wrong_shape(tree.span, message, help, arguments=("arrows",)))
     if isinstance(tree, Seq):  # it is not known what names alone mean
@@ -440,7 +442,7 @@ def as_keys(tree: Tree, report: Report) -> Keys:
     if isinstance(tree, Seq):
         entries = [item.entries[0] for item in tree.items if isinstance(item, Map) and item.entries]
         if entries and len(entries) == len(tree.items):
-            rows = ", ".join(f"{each.key.span.text}: {each.value.span.text}" for each in entries)
+            rows = ", ".join(f"{entry.key.span.text}: {entry.value.span.text}" for entry in entries)
             wrong(
                 tree,
                 "keys",
@@ -498,7 +500,7 @@ def as_presets(tree: Tree, report: Report) -> tuple[Preset, ...]:
         number = _decimal_comma(before, entry)
         if number is not None:
             report.append(_with_comma(number))
-            entries = tuple(each for each in entries if each is not entry)
+            entries = tuple(item for item in entries if item is not entry)
     return tuple([_preset(entry, report) for entry in entries])
 
 
@@ -537,9 +539,9 @@ def _check_decimal_commas(value: Seq | Map, report: Report) -> None:
     while todo:
         tree = todo.pop()
         if isinstance(tree, Seq):
-            todo += [each for each in tree.items if not isinstance(each, Scalar)]
+            todo += [item for item in tree.items if not isinstance(item, Scalar)]
         elif isinstance(tree, Map):
-            todo += [each.value for each in tree.entries if not isinstance(each.value, Scalar)]
+            todo += [entry.value for entry in tree.entries if not isinstance(entry.value, Scalar)]
             for before, entry in pairwise(tree.entries):
                 number = _decimal_comma(before, entry)
                 if number is not None:

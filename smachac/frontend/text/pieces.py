@@ -51,7 +51,7 @@ def _cuts(text: str) -> list[int]:
     other = re.compile(rf"^(?! {{{width + 1}}}| {{{width}}}-[ \n]|[ \t]*(?:#|$))", re.M)
     if other.search(text, begin) is not None:
         return []
-    return [each.start() for each in item.finditer(text, begin)]
+    return [match_.start() for match_ in item.finditer(text, begin)]
 
 
 def parse_in_pieces(
@@ -64,7 +64,7 @@ def parse_in_pieces(
     if not cuts or not fits_limits(source, []):
         return None
     pieces = [*_moved(source, [0, *cuts], before)]
-    source.pieces[:] = [each.piece for each in pieces]
+    source.pieces[:] = [piece.piece for piece in pieces]
     report: Report = []
     doubts = Doubts([], [], [])
     for number, (text, piece, tree) in enumerate(pieces):
@@ -103,7 +103,7 @@ def _tree(source: Source, piece: Piece, text: str, report: Report, doubts: Doubt
 def _whole(source: Source, pieces: list[PieceTree]) -> Map | None:
     """The tree of a script, from those of its pieces; None if one is missing, or if the list is not
     that of the script."""
-    head, *states = (each.tree for each in pieces)
+    head, *states = (piece.tree for piece in pieces)
     items = [tree for tree in states if tree is not None]
     if head is None or len(items) < len(states):
         return None

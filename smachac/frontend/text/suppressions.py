@@ -203,8 +203,10 @@ def apply_suppressions(
     if not given:
         return report, set()
     by_line: dict[tuple[Source, int, str], Suppression] = {}
-    for each in given:
-        by_line.setdefault((each.span.source, each.line, each.code), each)
+    for suppression in given:
+        by_line.setdefault(
+            (suppression.span.source, suppression.line, suppression.code), suppression
+        )
     kept, used = [], set()
     for item in report:
         fit = by_line.get((item.span.source, item.span.line, item.code))

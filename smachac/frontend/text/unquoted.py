@@ -72,12 +72,12 @@ def parameters(text: str) -> list[str]:
             found.append("")
         else:
             found[-1] += character
-    return [each.strip() for each in found]
+    return [text.strip() for text in found]
 
 
 def are_parameters(text: str) -> bool:
     """Parameters of a C++ function, each a type and a name."""
-    return all(_PARAMETER.fullmatch(each) is not None for each in parameters(text))
+    return all(_PARAMETER.fullmatch(parameter) is not None for parameter in parameters(text))
 
 
 Shape = tuple[Callable[[str], bool], str, str]
@@ -112,7 +112,7 @@ def check_unquoted(tree: Tree, shape: str, report: Report) -> None:
 def _reads_userdata(text: str) -> bool:
     """Whether a text is an expression with a usual name of userdata, such as `ud.n > 0`."""
     tree = python_tree(text.strip().strip("`"))
-    names = (each.id for each in ast.walk(tree) if isinstance(each, ast.Name)) if tree else ()
+    names = (node.id for node in ast.walk(tree) if isinstance(node, ast.Name)) if tree else ()
     return any(name in ("ud", "userdata") for name in names)
 
 

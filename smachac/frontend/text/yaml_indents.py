@@ -85,7 +85,7 @@ def best_move(text: str, index: int, *, stops: bool) -> Move | None:
             continue
         cost = form + 0.4 * lost + 0.11 * unusual_steps(moved, usual)
         ranked.append((cost + 0.001 * (move.last - move.first) + 0.0001 * abs(move.by), move))
-    ranked.sort(key=lambda each: each[0])
+    ranked.sort(key=lambda pair: pair[0])
     if not ranked or (len(ranked) > 1 and ranked[1][0] - ranked[0][0] < _EQUAL):
         return None
     return ranked[0][1]

@@ -208,7 +208,7 @@ def _ranked(text: str, lines: _Lines) -> list[tuple[float, _Mend]]:
         cost = _cost(repaired, text)
         if cost is not None and cost < most:
             ranked.append((cost + 0.1 * bool(mend.removed.strip(" =")), mend.moved(lines.start)))
-    return sorted(ranked, key=lambda each: (each[0], _order(each[1])))
+    return sorted(ranked, key=lambda pair: (pair[0], _order(pair[1])))
 
 
 def _order(mend: _Mend) -> int:
@@ -325,13 +325,13 @@ def _cost_of_items(tree: Seq, owner: str, text: str) -> float:
         return 1.0
     pairs = sum(isinstance(item, Map) and not item.span.text.startswith("{") for item in items)
     texts = [item.value for item in items if isinstance(item, Scalar) and item.plain]
-    words = [each for each in texts if isinstance(each, str)]
-    two = sum(_NUMBERS.fullmatch(each) is not None for each in words)
+    words = [text for text in texts if isinstance(text, str)]
+    two = sum(_NUMBERS.fullmatch(word) is not None for word in words)
     if LONG.get(owner, owner) in _NAME_LISTS:
         two += pairs
     if LONG.get(owner, owner) in _NAME_LISTS and len(texts) == len(items):
-        two += sum(_are_two(each, text) for each in words)
-    numbers = sum(isinstance(each, int | float) for each in texts)
+        two += sum(_are_two(word, text) for word in words)
+    numbers = sum(isinstance(text, int | float) for text in texts)
     mixed = 0.2 * (0 < numbers < len(items) and any(isinstance(item, Seq) for item in items))
     return float((0 < pairs < len(items)) + two) + mixed
 
@@ -473,11 +473,11 @@ def _piece(text: str, mend: _Mend) -> str:
         node = todo.pop()
         places = [(node.span.start, node.span.end)]
         if isinstance(node, Map):
-            todo += [each.value for each in node.entries if not isinstance(each.value, Scalar)]
-            places = [(each.key.start, each.value.span.end) for each in node.entries]
+            todo += [entry.value for entry in node.entries if not isinstance(entry.value, Scalar)]
+            places = [(entry.key.start, entry.value.span.end) for entry in node.entries]
         elif isinstance(node, Seq):
-            todo += [each for each in node.items if isinstance(each, Map | Seq)]
-            places = [(each.span.start, each.span.end) for each in node.items]
+            todo += [item for item in node.items if isinstance(item, Map | Seq)]
+            places = [(item.span.start, item.span.end) for item in node.items]
         for first, last in places:
             piece = text[lines.start + first : lines.start + last]
             if first <= start - lines.start and end - lines.start <= last:

@@ -35,7 +35,7 @@ class Row(NamedTuple):
     def moved(self, by: int) -> Row:
         return self._replace(
             column=self.column + by,
-            dashes=tuple(each + by for each in self.dashes),
+            dashes=tuple(dash + by for dash in self.dashes),
             key_column=self.key_column + by,
         )
 
@@ -93,7 +93,7 @@ def rows_of(text: str) -> list[Row]:
 
 
 def _surplus(bare: str) -> int:
-    return sum(bare.count(each) for each in "[{") - sum(bare.count(each) for each in "]}")
+    return sum(bare.count(text) for text in "[{") - sum(bare.count(text) for text in "]}")
 
 
 def _joined(rows: list[Row]) -> list[Row]:
@@ -184,7 +184,7 @@ def _of_interface(root: Part) -> float:
         nested = value is not None and value.kind == "map"
         if key in ("variables", "outcomes", "input_keys", "output_keys") and nested:
             assert value is not None
-            cost += sum(each in INTERFACE_FIELDS for each, _ in value.entries)
+            cost += sum(text in INTERFACE_FIELDS for text, _ in value.entries)
             cost += sum(below is None for _, below in value.entries)
     return cost
 
@@ -205,9 +205,9 @@ def _of_fields(part: Part, owner: str) -> float:
         elif name in _NAMES and value.kind != "text":
             cost += _of_names(value)
         elif name == "outcome_map" and value.kind != "text":
-            cost += sum(1.0 if each is None or (each.kind == "text" and each.value[0] not in "{*[")
-                        else 0.0 if each.kind == "text" else _of_names(each)
-                        for _, each in value.entries)  # fmt: skip
+            cost += sum(1.0 if part is None or (part.kind == "text" and part.value[0] not in "{*[")
+                        else 0.0 if part.kind == "text" else _of_names(part)
+                        for _, part in value.entries)  # fmt: skip
         elif name in VARIABLES and value.kind != "text" and VARIABLES[name].shape == "name":
             cost += 1
     return cost

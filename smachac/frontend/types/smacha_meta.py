@@ -228,7 +228,7 @@ def words_used(file: str, find: Callable[[str], Source | None]) -> frozenset[str
             files = _FILES.findall(brings.group(1)) if brings.group(1)[:1] in "\"'[(" else []
             if not files:
                 return None
-            todo += [each for each in files if each not in seen]
+            todo += [file for file in files if file not in seen]
             seen.update(files)
     return frozenset(words)
 

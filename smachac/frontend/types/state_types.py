@@ -180,7 +180,7 @@ def _outcomes(section: Section, report: Report) -> tuple[Outcome, ...]:
 def _without_outcomes(name: str, tree: Map, used: Section) -> Diagnostic:
     """SM005 for an interface without outcomes. `used` are those in its `writes`."""
     owner = Owner(name, f"the interface `{name}`")
-    example = f"[{', '.join(str(each.key.value) for each in used)}]" if used else ""
+    example = f"[{', '.join(str(entry.key.value) for entry in used)}]" if used else ""
     return missing_variable(tree.entries[0].key.span, "outcomes", owner, example=example)
 
 
@@ -230,7 +230,7 @@ def _needed_variables(
             continue
         one = isinstance(needs.value, Scalar)
         words = [as_name(needs.value, report)] if one else as_names(needs.value, report)
-        known = [_check_declared(sections, "variables", each, report) for each in words if each]
+        known = [_check_declared(sections, "variables", word, report) for word in words if word]
         found[outcome] = tuple(name for name in known if name is not None)
     return {outcome: names for outcome, names in found.items() if names}
 
@@ -440,7 +440,7 @@ def _ros_versions(tree: Tree) -> dict[str, int]:
         return {}
     pairs = [("", entry.value)]
     if isinstance(entry.value, Map):
-        pairs = [(str(each.key.value), each.value) for each in entry.value.entries]
+        pairs = [(str(item.key.value), item.value) for item in entry.value.entries]
     return {
         value: version.value
         for value, version in pairs
@@ -462,7 +462,7 @@ def _keys(section: Section, report: Report) -> tuple[Key, ...]:
     for entry in section:
         check_fields(entry.value, f"the key `{entry.key.value}`", KEY_FACTS, report)
     declared = _declared_words(section)
-    return tuple([_key(*each, report) for each in declared if not _is_set(each[1], "optional")])
+    return tuple([_key(*pair, report) for pair in declared if not _is_set(pair[1], "optional")])
 
 
 def _key(name: Word, tree: Tree, report: Report) -> Key:
@@ -560,11 +560,11 @@ def _unwritten(sections: Mapping[str, Section], part: str) -> str | None:
     if part == "outcomes":
         used = {str(entry.key.value) for entry in writes}
         flags = dict(declared_in(sections[part]))
-        names = [each for each in names if each != PREEMPTED and not is_failure(each)
-                 and not _is_set(flags[each], "failure")]  # fmt: skip
+        names = [name for name in names if name != PREEMPTED and not is_failure(name)
+                 and not _is_set(flags[name], "failure")]  # fmt: skip
     else:
         used = {word.text for entry in writes for word in as_names(entry.value, [])}
-    left = [each for each in names if each not in used]
+    left = [name for name in names if name not in used]
     return left[0] if len(left) == 1 else None
 
 
@@ -579,7 +579,9 @@ def _read_template(
     known = _find(extended, library, [], below) if extended else None
     outcomes = found.outcomes if found is not None else ()
     declared = smacha_meta.class_outcomes(template)
-    if declared and {each.name for each in declared} != {each.name for each in outcomes}:
+    if declared and {outcome.name for outcome in declared} != {
+        outcome.name for outcome in outcomes
+    }:
         outcomes = declared  # a meta block is documentation
     outcomes = outcomes or (known.outcomes if known is not None else ())
     outcomes = outcomes or smacha_meta.outcomes_in_code(template)
@@ -632,9 +634,9 @@ def _parameters(facts: ClassFacts | None) -> dict[str, VariableType]:
     """The variables of a template without an interface: the parameters of its constructor."""
     known = facts.parameters if facts is not None else None
     return {
-        each.word.text: VariableType(name=each.word.text, required=each.required)
-        for each in known or ()
-        if each.word.text not in STATE_PARAMETERS
+        parameter.word.text: VariableType(name=parameter.word.text, required=parameter.required)
+        for parameter in known or ()
+        if parameter.word.text not in STATE_PARAMETERS
     }
 
 

@@ -92,7 +92,7 @@ def _with_records(tree: Tree) -> Tree:
     """A mapping of names to types, in which records are texts."""
     if not isinstance(tree, Map):
         return tree
-    return Map(tuple(Entry(each.key, as_record(each.value)) for each in tree.entries), tree.span)
+    return Map(tuple(Entry(entry.key, as_record(entry.value)) for entry in tree.entries), tree.span)
 
 
 def as_record(tree: Tree) -> Tree:

@@ -67,7 +67,7 @@ def facts_without_interface(name: str, file: str, library: Library) -> ClassFact
         inputs=None,
         outputs=None,
         passed=tuple((part, (*names, *written)) for part, names in facts.passed),
-        endings=tuple(replace(each, written=None) for each in facts.endings),
+        endings=tuple(replace(ending, written=None) for ending in facts.endings),
         values=(),
         unlisted_reads=unlisted[0],
         unlisted_writes=unlisted[1],

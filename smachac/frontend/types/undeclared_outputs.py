@@ -47,8 +47,8 @@ def undeclared_outputs(lost: Sequence[Word], section: Section) -> Diagnostic:
     verb = "is" if len(names) == 1 else "are"
     if not section:
         help = f"add `output_keys: [{', '.join(names)}]`"
-    elif all(isinstance(each.value, Map) and not each.value.entries for each in section):
-        every = [str(each.key.value) for each in section] + names
+    elif all(isinstance(entry.value, Map) and not entry.value.entries for entry in section):
+        every = [str(entry.key.value) for entry in section] + names
         help = f"write `output_keys: [{', '.join(every)}]`"
     else:
         each_type = " and ".join(f"`{name}: any`" for name in names)

@@ -118,7 +118,9 @@ def _chosen(type_: Type, tree: Map, report: Report) -> Type:
     if type_ not in (ANY, Type("str"), Type("int")):
         return type_
     kind = int if type_ == Type("int") else str if type_ == Type("str") else int | str
-    kept = [each for each in choices if isinstance(each, int | str) and isinstance(each, kind)]
+    kept = [
+        choice for choice in choices if isinstance(choice, int | str) and isinstance(choice, kind)
+    ]
     return Type("one_of", tuple(kept)) if kept and len(kept) == len(choices) else type_
 
 
@@ -146,7 +148,7 @@ def limits_of(tree: Tree, type_: Type, role: str, report: Report) -> Limits | No
         least=least if bounds["min"] is None else bounds["min"],
         most=math.inf if bounds["max"] is None else bounds["max"],
         exclusive=exclusive is not None and as_flag(exclusive.value, report),
-        choices=tuple(each for each in numbers or () if isinstance(each, int | float)),
+        choices=tuple(number for number in numbers or () if isinstance(number, int | float)),
     )
     highest = tree.get("max")
     if found.least > found.most and highest is not None:

@@ -68,7 +68,7 @@ def live_facts(facts: ClassFacts, found: Iterable[Choice], instance: Instance) -
         facts,
         reads=tuple(word for word in facts.reads if word.span not in dead),
         writes=tuple(word for word in facts.writes if word.span not in dead),
-        endings=tuple(each for each in facts.endings if each.outcome.span not in dead),
+        endings=tuple(ending for ending in facts.endings if ending.outcome.span not in dead),
     )
 
 

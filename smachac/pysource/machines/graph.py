@@ -721,11 +721,11 @@ def _names_of(value: Value | None) -> frozenset[str] | None:
 def _without_targets(node: Node, known: Collection[str]) -> Node:
     """A state whose transitions to unknown names lead to ELSEWHERE: to a state that is not known,
     perhaps."""
-    if all(each.target in known for each in node.transitions):
+    if all(transition.target in known for transition in node.transitions):
         return node
     transitions = (
-        each if each.target in known else replace(each, target=ELSEWHERE)
-        for each in node.transitions
+        transition if transition.target in known else replace(transition, target=ELSEWHERE)
+        for transition in node.transitions
     )
     return replace(node, transitions=tuple(transitions))
 

@@ -48,7 +48,7 @@ def script_differences(tree: Tree | None) -> Iterator[SmachaDifference]:
         _states(tree.entries, found, split=False)
     elif isinstance(tree, Seq):
         _items(tree, found, split=False)
-    yield from sorted(found, key=lambda each: each.span.start)
+    yield from sorted(found, key=lambda difference: difference.span.start)
 
 
 def _states(entries: tuple[Entry, ...], found: list[SmachaDifference], *, split: bool) -> None:
@@ -144,7 +144,7 @@ def _look_ups(entry: Entry, names: set[str]) -> Iterator[SmachaDifference]:
     while todo:
         tree, depth, listed = todo.pop()
         if isinstance(tree, Map):
-            todo += [(each.value, depth + 1, listed) for each in tree.entries]
+            todo += [(entry.value, depth + 1, listed) for entry in tree.entries]
             continue
         if not isinstance(tree, Seq):
             continue

@@ -80,8 +80,8 @@ def template_differences(
     if not chain:
         return
     found = [*_of_names(source, chain, given, sets), *_of_text(source, chain), *_of_blocks(chain)]
-    found = [each for each in found if used or each.name != "unknown-name"]
-    yield from sorted(found, key=lambda each: each.span.start)
+    found = [difference for difference in found if used or difference.name != "unknown-name"]
+    yield from sorted(found, key=lambda difference: difference.span.start)
 
 
 def top_level_sets(source: Source) -> tuple[str, ...]:
@@ -201,8 +201,8 @@ def _of_names(
     known = {*GIVEN, *BLOCKS, *schema.VARIABLES, "range", "dict", "loop", "super"}
     known |= {"self", "cycler", "joiner", "namespace", "caller", "varargs", "kwargs"}
     known |= {name for _, names in chain for name in (*names.sets, *names.tested)}
-    for each, _ in chain:
-        meta = smacha_meta.read_meta(each)
+    for other, _ in chain:
+        meta = smacha_meta.read_meta(other)
         if meta is not None:
             known |= {*meta.variables, *(word.text for word in (*meta.input_keys,))}
     for name, line in own.used.items():

@@ -74,8 +74,8 @@ def without_runtime(trace: TracebackType | None) -> TracebackType | None:
             kept.append(trace)
         trace = trace.tb_next
     found = None
-    for each in reversed(kept):
-        found = TracebackType(found, each.tb_frame, each.tb_lasti, each.tb_lineno)
+    for type_ in reversed(kept):
+        found = TracebackType(found, type_.tb_frame, type_.tb_lasti, type_.tb_lineno)
     return found
 
 

@@ -83,7 +83,7 @@ class _Reporter:
 
     def _register_callbacks(self, path: str, container: Container) -> None:
         """Report on the container from now on; once, however often the server is started."""
-        if any(container is each for each in self._registered):
+        if any(container is other for other in self._registered):
             return
         self._registered.append(container)
 
@@ -114,7 +114,7 @@ class _Reporter:
             internal_outcomes=[outcome for outcome, _, _ in edges],
             outcomes_from=[label for _, label, _ in edges],
             outcomes_to=[target for _, _, target in edges],
-            container_outcomes=[str(each) for each in container.get_registered_outcomes()],
+            container_outcomes=[str(outcome) for outcome in container.get_registered_outcomes()],
         )
 
     def _report(self, path: str, container: Container, info: str) -> None:
@@ -149,7 +149,7 @@ class _Reporter:
             smach.logerr(f"a command to container '{command.path}' cannot be read: {error}")
             return
         userdata = received_userdata(command.path, data, self._unpickle)
-        container.set_initial_state([known[each] for each in command.initial_states], userdata)
+        container.set_initial_state([known[state] for state in command.initial_states], userdata)
         self._report(command.path, container, "REMOTE_INIT")
 
 
@@ -189,8 +189,8 @@ class IntrospectionServer(_Reporter):
         added = dict(containers(path, state))
         self._paths = {**self._paths, **added}
         if self._running:
-            for each, container in added.items():
-                self._follow(each, container)
+            for name, container in added.items():
+                self._follow(name, container)
 
     def clear(self) -> None:
         """Report on no container any more, until `construct` or `start` adds some."""

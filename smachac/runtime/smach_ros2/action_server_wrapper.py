@@ -107,9 +107,9 @@ class ActionServerWrapper:
         container.register_transition_cb(self.transition_cb)
         container.register_termination_cb(self.termination_cb)
         if self._path_slot is not None:
-            for _, each in containers("/", container):
-                each.register_start_cb(self._publish_path)
-                each.register_transition_cb(self._publish_path)
+            for _, other in containers("/", container):
+                other.register_start_cb(self._publish_path)
+                other.register_transition_cb(self._publish_path)
 
     def run_server(self) -> None:
         """Spin the node if nobody does; the server itself is up since it was constructed."""

@@ -38,7 +38,7 @@ class RecordROSBagState(smach.State):
             return "succeeded"
         file = optional(userdata, "file")
         topics = optional(userdata, "topics", [])
-        if not isinstance(file, str) or not all(isinstance(each, str) for each in topics):
+        if not isinstance(file, str) or not all(isinstance(item, str) for item in topics):
             self.node.get_logger().error("`file` must be a string and `topics` a list of strings")
             return "aborted"
         if self.action == "stop":

@@ -48,9 +48,9 @@ def await_subscription(
     if matched or is_latched or not limit or stopped() or not node.context.ok():
         return
     others = [
-        f"{each.node_name} ({each.topic_type}, {each.qos_profile.reliability.name.lower()}, "
-        f"{each.qos_profile.durability.name.lower()})"
-        for each in node.get_subscriptions_info_by_topic(publisher.topic_name)
+        f"{item.node_name} ({item.topic_type}, {item.qos_profile.reliability.name.lower()}, "
+        f"{item.qos_profile.durability.name.lower()})"
+        for item in node.get_subscriptions_info_by_topic(publisher.topic_name)
     ]
     node.get_logger().warning(
         f"topic '{publisher.topic_name}': no subscription after {limit:g} s, the message may be "

@@ -198,7 +198,7 @@ class ContainerProxy:
             internal_outcomes=[outcome for outcome, _, _ in edges],
             outcomes_from=[label for _, label, _ in edges],
             outcomes_to=[target for _, _, target in edges],
-            container_outcomes=[str(each) for each in container.get_registered_outcomes()],
+            container_outcomes=[str(outcome) for outcome in container.get_registered_outcomes()],
         )
 
     def _publish_status(self, info: str = "") -> None:
@@ -288,8 +288,8 @@ class IntrospectionServer(ros.Node):
         """
         if not isinstance(state, Container):
             raise InvalidStateError(f"a {type(state).__name__} has nothing to look into")
-        for each, container in containers(path, state):
-            proxy = ContainerProxy(self, server_name, container, each, unpickle=self._unpickle)
+        for text, container in containers(path, state):
+            proxy = ContainerProxy(self, server_name, container, text, unpickle=self._unpickle)
             self._proxies.append(proxy)
             proxy.start()
 

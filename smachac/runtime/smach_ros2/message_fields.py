@@ -67,7 +67,7 @@ class FieldError(ValueError):
         return FieldError(self.reason, (place, *self.path))
 
     def __str__(self) -> str:
-        parts = (f"[{each}]" if isinstance(each, int) else f".{each}" for each in self.path)
+        parts = (f"[{value}]" if isinstance(value, int) else f".{value}" for value in self.path)
         return f"`{''.join(parts).removeprefix('.')}` {self.reason}"
 
 
@@ -276,9 +276,9 @@ def _items(kind: Any, value: Any) -> Any:
     if code is not None:
         return _numbers(kind, item.typename, value)
     fitting = []
-    for index, each in enumerate(value):
+    for index, other in enumerate(value):
         try:
-            fitting.append(_fitting(item, each))
+            fitting.append(_fitting(item, other))
         except FieldError as error:
             raise error.inside(index) from None
     is_same = all(old is new for old, new in zip(value, fitting, strict=True))
@@ -302,9 +302,9 @@ def _numbers(kind: Any, name: str, value: Any) -> Any:
             if name != "float" or not any(map(math.isinf, numbers)):
                 return items if is_fixed else numbers
     fitting = []
-    for index, each in enumerate(items):
+    for index, item in enumerate(items):
         try:
-            fitting.append(_basic(name, each))
+            fitting.append(_basic(name, item))
         except FieldError as error:
             raise error.inside(index) from None
     return fitting if is_fixed else array.array(code, fitting)

@@ -22,14 +22,14 @@ def declared(
     for a value of another type or outside the choices.
     """
     values = {}
-    for each in inspect.signature(build).parameters.values():
-        if each.default is inspect.Parameter.empty:
+    for parameter in inspect.signature(build).parameters.values():
+        if parameter.default is inspect.Parameter.empty:
             continue
-        allowed = (choices or {}).get(each.name, ())
+        allowed = (choices or {}).get(parameter.name, ())
         try:
-            values[each.name] = _declare(node, each.name, each.default, allowed)
+            values[parameter.name] = _declare(node, parameter.name, parameter.default, allowed)
         except ros.load("rclpy.exceptions").ParameterException as error:
-            raise ParameterError(f"parameter '{each.name}': {error}") from None
+            raise ParameterError(f"parameter '{parameter.name}': {error}") from None
     _check_hidden(node, values)
     return values
 
@@ -49,7 +49,7 @@ def _declare(node: Any, name: str, default: Any, allowed: Sequence[Any]) -> Any:
         except errors.InvalidParameterTypeException:
             if not _is_float(default):
                 raise
-            whole = int(default) if isinstance(default, float) else [int(each) for each in default]
+            whole = int(default) if isinstance(default, float) else [int(item) for item in default]
             with suppress(errors.InvalidParameterTypeException):  # the first message has the type
                 node.declare_parameter(name, whole, descriptor)
             if not node.has_parameter(name):
@@ -116,4 +116,4 @@ def _converted(name: str, default: Any, value: Any) -> Any:
         return float(value) if _is_float(default) else value
     if _list(default) is None:
         raise ParameterError(f"parameter '{name}': `{items}` is a list, the default is {default!r}")
-    return [float(each) for each in items] if _is_float(default) else items
+    return [float(item) for item in items] if _is_float(default) else items

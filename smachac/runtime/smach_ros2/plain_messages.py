@@ -51,11 +51,11 @@ _PARTS = {
 
 
 def _kind(value: Sequence[Any]) -> str:
-    if len(value) == 3 and all(isinstance(each, (int, float)) for each in value):
+    if len(value) == 3 and all(isinstance(item, (int, float)) for item in value):
         return "geometry_msgs/PointStamped"
     if len(value) == 2 and len(value[0]) == 3 and len(value[1]) == 4:
         return "geometry_msgs/PoseStamped"
-    return "sensor_msgs/PointCloud2" if all(len(each) == 3 for each in value) else _POSES
+    return "sensor_msgs/PointCloud2" if all(len(item) == 3 for item in value) else _POSES
 
 
 _POSES = "geometry_msgs/PoseArray"

@@ -18,7 +18,7 @@ def profile(value: Any = None) -> Any:
     if isinstance(value, module.QoSProfile):
         return value
     if faults := ros2_qos.faults(value):
-        raise ValueError("; ".join(each.text for each in faults))
+        raise ValueError("; ".join(fault.text for fault in faults))
     policies = ros2_qos.policies(value)
     enums = {
         "reliability": module.ReliabilityPolicy,
@@ -26,7 +26,7 @@ def profile(value: Any = None) -> Any:
         "history": module.HistoryPolicy,
     }
     chosen: Mapping[str, Any] = {
-        key: enums[key][str(each).upper()] if key in enums else each
-        for key, each in policies.items()
+        key: enums[key][str(policy).upper()] if key in enums else policy
+        for key, policy in policies.items()
     }
     return module.QoSProfile(**chosen)

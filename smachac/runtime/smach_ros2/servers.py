@@ -42,7 +42,7 @@ class ServerWatch:
 
     def _publishers(self) -> Gids:
         known = self._node.get_publishers_info_by_topic(self._topic, self._is_dds_name)
-        return frozenset(bytes(each.endpoint_gid) for each in known)
+        return frozenset(bytes(item.endpoint_gid) for item in known)
 
 
 def watch_action(node: Any, name: str) -> ServerWatch:

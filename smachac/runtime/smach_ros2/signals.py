@@ -49,7 +49,7 @@ class PreemptHandler(StopSignals):
     def discard(self, machine: Any) -> None:
         """Do not preempt this machine any more."""
         with self._changing:
-            self._machines = [each for each in self._machines if each is not machine]
+            self._machines = [other for other in self._machines if other is not machine]
 
     def remove(self, limit: float | None = None) -> None:
         """Restore the handlers that were there before, and wait for the end of the machines."""

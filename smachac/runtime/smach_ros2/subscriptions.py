@@ -62,10 +62,10 @@ class Subscription:
         self._report_at = None
         known = self._node.get_publishers_info_by_topic(self._subscription.topic_name)
         publishers = [
-            f"{each.node_name} ({each.topic_type}, "
-            f"{each.qos_profile.reliability.name.lower()}, "
-            f"{each.qos_profile.durability.name.lower()})"
-            for each in known
+            f"{item.node_name} ({item.topic_type}, "
+            f"{item.qos_profile.reliability.name.lower()}, "
+            f"{item.qos_profile.durability.name.lower()})"
+            for item in known
         ]
         self._node.get_logger().warning(
             f"topic '{self._topic}': no message for {SILENCE_LIMIT:.0f} s; "

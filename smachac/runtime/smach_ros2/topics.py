@@ -170,7 +170,7 @@ class ReadTopicState(RosState):
 
         def known() -> bool:
             publishers = self.node.get_publishers_info_by_topic(name)
-            found.extend(each.topic_type for each in publishers)
+            found.extend(publisher.topic_type for publisher in publishers)
             return bool(found)
 
         self._wait_until(known, self._timeout, interval=DISCOVERY_INTERVAL)

@@ -51,7 +51,7 @@ class Progress:
     def __init__(self, stream: TextIO, sugar: Sugar = Sugar(), *, colour: bool = False) -> None:  # noqa: B008 (constant)
         self._stream: TextIO | None = stream
         self._sugar = sugar
-        self._around = {each.child: path for path, each in sugar.repeated.items()}
+        self._around = {repeated.child: path for path, repeated in sugar.repeated.items()}
         self._counts: dict[str, int] = {}
         self._ends: dict[str, str] = {}
         self._colour = colour

@@ -126,7 +126,7 @@ def script(
     for path, row in steps.items():
         if path not in leaves or not (row or strict):
             raise KeyError(path)
-        visits = [Visit(*each) for each in row]
+        visits = [Visit(*other) for other in row]
         _replace(leaves[path], _scripted(machine, leaves[path], visits) if row else _refused)
     if strict is not None:
         total = count(1)
@@ -219,4 +219,4 @@ def _walk(machine: Any, name: str) -> Iterator[tuple[Any, str, Any]]:
         yield parent, label, state
         if is_container(state):
             children = [child for child in state.get_children().items() if child[1] is not None]
-            stack.extend((state, each, child) for each, child in reversed(children))
+            stack.extend((state, item, child) for item, child in reversed(children))

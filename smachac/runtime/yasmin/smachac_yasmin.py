@@ -361,7 +361,7 @@ class Concurrence(_Container, State):
             for state in self.running:
                 if self.requested and not state.requested:
                     state.request()
-        threads = [threading.Thread(target=run, args=each) for each in self.children.items()]
+        threads = [threading.Thread(target=run, args=item) for item in self.children.items()]
         for thread in threads:
             thread.start()
         for thread in threads:

@@ -59,7 +59,7 @@ def item_of(given: list[Term]) -> Type:
     """The type of the items that a function iterates over."""
     if len(given) == 1:
         return inside(items(given[0]).type)
-    return joined([each.type for each in given])
+    return joined([term.type for term in given])
 
 
 def items(term: Term) -> Term:
@@ -174,9 +174,9 @@ def _extreme(name: str) -> Callable[[list[Term], Named], Term]:
             source = items(given[0])
             item_type, text = inside(source.type), source.text()
         else:
-            item_type = joined([each.type for each in given])
+            item_type = joined([term.type for term in given])
             array = Type("array", (item_type, len(given)))
-            inner = ", ".join(each.spell(item_type).text for each in given)
+            inner = ", ".join(term.spell(item_type).text for term in given)
             text = f"{cpp(array)}{{{{{inner}}}}}"
         _check_order(item_type, named)
         return fixed(item_type, call(name, text, *(key.text() for key in named.values())))
@@ -194,9 +194,9 @@ def _check_order(item_type: Type, named: Named) -> None:
 
 def _range(given: list[Term], named: Named) -> Term:
     _no_names(named)
-    if not 1 <= len(given) <= 3 or any(number(each.type) != INT for each in given):
+    if not 1 <= len(given) <= 3 or any(number(term.type) != INT for term in given):
         raise UnportableError("`range` takes one to three integers")
-    return fixed(RANGE, call("range", *(whole(each).text for each in given)))
+    return fixed(RANGE, call("range", *(whole(term).text for term in given)))
 
 
 def _round(given: list[Term], named: Named) -> Term:

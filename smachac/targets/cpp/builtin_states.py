@@ -161,7 +161,7 @@ def enumeration(names: tuple[str, ...]) -> list[str]:
     """The enumeration of the outcomes of a state."""
     size = 8 if len(names) <= 2**8 else 16 if len(names) <= 2**16 else 32
     head = f"enum class Outcome : std::uint{size}_t {{"
-    return [head, *(f"  {identifier(each)}," for each in names), "};"]
+    return [head, *(f"  {identifier(name)}," for name in names), "};"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -195,7 +195,7 @@ class _BuiltInLeaf:
         return self.scope.read(self.bound(key), key)
 
     def writes(self, key: str) -> bool:
-        return self.in_iterator or any(each.name == key for each in self.leaf.outputs)
+        return self.in_iterator or any(output.name == key for output in self.leaf.outputs)
 
     def write(self, key: str, make: Callable[[Type], Printed]) -> _Statements:
         """The statements that write a key; `make` gives the value for the type of the key."""

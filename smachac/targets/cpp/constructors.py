@@ -126,7 +126,7 @@ def constructor_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
         return
     word = body.word(name, heads[0].start(), heads[0].start() + len(name))
     if len(heads) > 1:
-        if len(wanted) not in (len(each) for each in lists if each is not None):
+        if len(wanted) not in (len(list_) for list_ in lists if list_ is not None):
             yield ClassFault(kind=WRONG_CONSTRUCTOR, name=word, near=_written(name, wanted))
     elif len(own) == len(wanted):
         yield from _same_number(code, body, word, own, wanted)
@@ -138,15 +138,15 @@ def _wanted(code: ClassCode) -> list[_Parameter] | None:
     """What a program passes: `const std::string &name`; None if it has no type in C++."""
     try:
         variables = [
-            f"{parameter_type(each.type)} {identifier(key)}".replace("& ", "&")
-            for key, each in code.type.variables.items()
+            f"{parameter_type(variable.type)} {identifier(key)}".replace("& ", "&")
+            for key, variable in code.type.variables.items()
         ]
     except UnportableError:
         return None
     texts = [*code.parameters, *variables]
-    if any("std::any" in each for each in texts):
+    if any("std::any" in text for text in texts):
         return None
-    return [_Parameter(text=each) for each in texts]
+    return [_Parameter(text=text) for text in texts]
 
 
 def _parameters(body: Part, head: re.Match[str]) -> list[_Parameter] | None:
@@ -164,19 +164,21 @@ def _parameters(body: Part, head: re.Match[str]) -> list[_Parameter] | None:
             line = " ".join(text.split())
             pieces.append(_Parameter(text=line, start=first, end=first + len(text.strip())))
             start = at + 1
-    return [] if [each.text for each in pieces] in ([""], ["void"]) else pieces
+    return [] if [piece.text for piece in pieces] in ([""], ["void"]) else pieces
 
 
 def _written(name: str, parameters: Sequence[_Parameter]) -> str:
-    return f"{name}({', '.join(each.text for each in parameters)})"
+    return f"{name}({', '.join(parameter.text for parameter in parameters)})"
 
 
 def _in_words_of(own: Sequence[_Parameter], wanted: Sequence[_Parameter]) -> list[_Parameter]:
     """The wanted parameters, as the class writes them where it has them."""
-    known = {each.name: each for each in own}
+    known = {parameter.name: parameter for parameter in own}
     return [
-        known[each.name] if each.name in known and _fit(known[each.name], each) else each
-        for each in wanted
+        known[parameter.name]
+        if parameter.name in known and _fit(known[parameter.name], parameter)
+        else parameter
+        for parameter in wanted
     ]
 
 
@@ -191,23 +193,37 @@ def _same_number(
     code: ClassCode, body: Part, name: Word, own: list[_Parameter], wanted: list[_Parameter]
 ) -> Iterator[ClassFault]:
     """Parameters in another order, or a number in place of a text or of items."""
-    pairs = [(one, each) for one, each in zip(own, wanted, strict=True) if one.name != each.name]
-    if pairs and sorted(each.name for each in own) == sorted(each.name for each in wanted):
+    pairs = [
+        (one, parameter)
+        for one, parameter in zip(own, wanted, strict=True)
+        if one.name != parameter.name
+    ]
+    if pairs and sorted(parameter.name for parameter in own) == sorted(
+        parameter.name for parameter in wanted
+    ):
         near = _written(name.text, _in_words_of(own, wanted))
         name = body.word(name.text, pairs[0][0].start, pairs[-1][0].end)
         order = _order(code, {one.name for one, _ in pairs})
-        if not all(_fit(one, each) for one, each in pairs):
+        if not all(_fit(one, parameter) for one, parameter in pairs):
             yield ClassFault(kind=REFUSED_ORDER, name=name, near=near, owner=order)
             return
-        gets = " and ".join(f"`{one.name}` gets the value of `{each.name}`" for one, each in pairs)
-        sure = all("other" not in (one.kind, each.kind) for one, each in pairs)
+        gets = " and ".join(
+            f"`{one.name}` gets the value of `{parameter.name}`" for one, parameter in pairs
+        )
+        sure = all("other" not in (one.kind, parameter.kind) for one, parameter in pairs)
         more = f"it compiles, but {gets}" if sure else f"by their places, {gets}"
         yield ClassFault(kind=PARAMETER_ORDER, name=name, near=near, more=more, owner=order)
-    for one, each in zip(own, wanted, strict=True) if not pairs else ():
-        plain = one.kind != each.kind and {one.kind, each.kind} <= {"number", "text", "items"}
+    for one, parameter in zip(own, wanted, strict=True) if not pairs else ():
+        plain = one.kind != parameter.kind and {one.kind, parameter.kind} <= {
+            "number",
+            "text",
+            "items",
+        }
         if plain and "bool" not in one.text:
             place = body.word(one.text, one.start, one.end)
-            yield ClassFault(kind=PARAMETER_TYPE, name=place, near=each.text, more=_type(each))
+            yield ClassFault(
+                kind=PARAMETER_TYPE, name=place, near=parameter.text, more=_type(parameter)
+            )
 
 
 def _type(parameter: _Parameter) -> str:
@@ -218,7 +234,7 @@ def _type(parameter: _Parameter) -> str:
 def _order(code: ClassCode, names: Collection[str]) -> str:
     """The order in which a program passes parameters."""
     file = f"`{code.type.name}.yml`"
-    objects = {_Parameter(text=each).name for each in code.parameters}
+    objects = {_Parameter(text=parameter).name for parameter in code.parameters}
     if objects.issuperset(names):
         return f"`with` in {file} has its objects"
     if objects.isdisjoint(names):
@@ -230,15 +246,15 @@ def _other_number(
     code: ClassCode, body: Part, name: Word, own: list[_Parameter], wanted: list[_Parameter]
 ) -> ClassFault:
     """Parameters that are missing, and those that a program does not pass."""
-    names, known = {each.name for each in own}, {each.name for each in wanted}
-    more = [each for each in own if each.name not in known]
-    lacks = [each for each in wanted if each.name not in names]
+    names, known = {parameter.name for parameter in own}, {parameter.name for parameter in wanted}
+    more = [parameter for parameter in own if parameter.name not in known]
+    lacks = [parameter for parameter in wanted if parameter.name not in names]
     near = _written(name.text, _in_words_of(own, wanted))
     file = f"`{code.type.name}.yml`"
     if lacks and not more:
-        objects = sum(each.text in code.parameters for each in lacks)
+        objects = sum(lack.text in code.parameters for lack in lacks)
         whose = f"which `with` in {file} passes" if objects == len(lacks) else f"of {file}"
-        listed = " and ".join(f"`{each.text}`" for each in lacks)
+        listed = " and ".join(f"`{lack.text}`" for lack in lacks)
         return ClassFault(
             kind=NO_CONSTRUCTOR_PARAMETER, name=name._replace(text=listed), near=near, more=whose
         )
@@ -264,13 +280,13 @@ def _objects_before_variables(
 ) -> bool:
     """Whether `with` can pass the parameters that it does not pass: they are objects, and all
     others have the order in which a program passes them."""
-    given = [_Parameter(text=each).name for each in code.parameters]
+    given = [_Parameter(text=parameter).name for parameter in code.parameters]
     count = len(given) + len(more)
-    variables = [_Parameter(text=identifier(each)).name for each in code.type.variables]
+    variables = [_Parameter(text=identifier(variable)).name for variable in code.type.variables]
     return (
-        [each.name for each in own[count:]] == variables
-        and [each.name for each in own[:count] if each not in more] == given
-        and all(each.kind == "object" for each in more)
+        [parameter.name for parameter in own[count:]] == variables
+        and [parameter.name for parameter in own[:count] if parameter not in more] == given
+        and all(parameter.kind == "object" for parameter in more)
     )
 
 
@@ -280,11 +296,11 @@ def _not_in_with(
     """The fault that a constructor takes objects that `with` does not pass. The place is in the
     interface, if the class uses the first of them, and otherwise the parameter."""
     one, spans = more[0], code.type.class_spans
-    text = " and ".join(f"`{each.text}`" for each in more)
-    given = {_Parameter(text=each).name: each for each in code.parameters}
-    objects = (given.get(each.name) or _qualified(each.text, code.name)
-               for each in own[: len(given) + len(more)])  # fmt: skip
-    near = ", ".join(re.sub(r" ([&*])", r"\1 ", each) for each in objects)
+    text = " and ".join(f"`{parameter.text}`" for parameter in more)
+    given = {_Parameter(text=parameter).name: parameter for parameter in code.parameters}
+    objects = (given.get(parameter.name) or _qualified(parameter.text, code.name)
+               for parameter in own[: len(given) + len(more)])  # fmt: skip
+    near = ", ".join(re.sub(r" ([&*])", r"\1 ", object_) for object_ in objects)
     here = body.word("the constructor takes it here", one.start, one.end)
     if not given:
         place = Word(text, spans.get(("cpp", "class"), NOWHERE))

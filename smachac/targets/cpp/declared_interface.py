@@ -130,7 +130,7 @@ def declared(type_: StateType, library: Library) -> Declared | None:
     derived = ":" in head["base"]
     inputs, outputs = (_fields(body, name, derived=derived) for name in ("In", "Out"))
     place = whole.word(name, *head.span("name"))
-    outcomes = _outcomes(body, [each.name for each in type_.outcomes])
+    outcomes = _outcomes(body, [outcome.name for outcome in type_.outcomes])
     # A misspelt type is reported in the interface; the class can fit the type that is meant.
     unsure = _has_unknown_type(type_)
     stale = _stale(body, interface_hash(type_)) if not unsure else None
@@ -155,7 +155,9 @@ def declared(type_: StateType, library: Library) -> Declared | None:
             *_without_number(whole, body, place, interface_hash(type_), derived=derived or unsure),
             *others,
         ),
-        uses=tuple(body.word(each[1], *each.span(1)) for each in _USED_OUTCOME.finditer(body.text)),
+        uses=tuple(
+            body.word(match_[1], *match_.span(1)) for match_ in _USED_OUTCOME.finditer(body.text)
+        ),
         fields={
             **_new_fields("In", inputs, type_.input_keys),
             **_new_fields("Out", outputs, type_.output_keys),
@@ -200,9 +202,9 @@ def _new_fields(
 
 def _has_unknown_type(type_: StateType) -> bool:
     """Whether the interface has a type that does not exist."""
-    types = [each.type for each in type_.variables.values()]
-    types += [each.type for each in (*type_.input_keys, *type_.output_keys)]
-    return any(unknown_words(each) for each in types)
+    types = [variable.type for variable in type_.variables.values()]
+    types += [key.type for key in (*type_.input_keys, *type_.output_keys)]
+    return any(unknown_words(type_) for type_ in types)
 
 
 def _absent(code: ClassCode, fault: ClassFault | None) -> Declared | None:
@@ -218,7 +220,7 @@ def absent_header(header: Word, library: Library) -> ClassFault | None:
     same name.
     """
     folder, _, file = header.text.rpartition("/")
-    others = [each for each in library.code_names(folder) if each.endswith((".hpp", ".h", ".hh"))]
+    others = [name for name in library.code_names(folder) if name.endswith((".hpp", ".h", ".hh"))]
     near = guesser(others)(file)
     if not others or (not folder and near is None):
         return None
@@ -257,7 +259,7 @@ def _absent_class(name: Word, whole: Part, header: str) -> ClassFault | None:
     """The fault that a header has no class of a name; None if it includes other headers of the
     user, which can define it."""
     included = re.findall(r'^\s*#\s*include\s*"([^"]*)"', whole.source.text, re.M)
-    if any(not each.startswith("smachac/") for each in included):
+    if any(not item.startswith("smachac/") for item in included):
         return None
     classes = re.findall(r"\b(?:class|struct)\s+(\w+)", whole.text)
     return ClassFault(kind=NO_CPP_CLASS, name=name, near=guesser(classes)(name.text), file=header)
@@ -271,15 +273,15 @@ def _faults(
         yield ClassFault(kind=NO_CPP_EXECUTE, name=name)
     if outcomes is None:
         return
-    known = [identifier(each.text) for each in outcomes]
+    known = [identifier(outcome.text) for outcome in outcomes]
     guess = guesser(known)
     used = {found[1] for found in _USED_OUTCOME.finditer(body.text)}
-    unused = [each for each in known if each not in used]
+    unused = [text for text in known if text not in used]
     only = unused[0] if len(unused) == len(used.difference(known)) == 1 else None
     for found in _USED_OUTCOME.finditer(body.text):
         if found[1] not in known:
             word = body.word(found[1], *found.span(1))
-            listed = ", ".join(f"`{each}`" for each in known)
+            listed = ", ".join(f"`{text}`" for text in known)
             near = guess(found[1]) or only
             yield ClassFault(kind=NO_OUTCOME, name=word, near=near, file="" if near else listed)
 
@@ -338,7 +340,7 @@ def _outcomes(body: Part, names: Iterable[str]) -> Words | None:
     """The outcomes of a class, under the names that its interface gives them."""
     own = {identifier(name): name for name in names}
     words = outcome_words(body)
-    return words and tuple([Word(own.get(each.text, each.text), each.span) for each in words])
+    return words and tuple([Word(own.get(word.text, word.text), word.span) for word in words])
 
 
 def _fields(body: Part, name: str, *, derived: bool) -> list[_Field] | None:
@@ -374,7 +376,7 @@ def _names(fields: Sequence[_Field] | None, keys: Iterable[Key]) -> Words | None
         return None
     own = {identifier(key.name): key.name for key in keys}
     return tuple(
-        each.word._replace(text=own.get(each.word.text, each.word.text)) for each in fields
+        field.word._replace(text=own.get(field.word.text, field.word.text)) for field in fields
     )
 
 
@@ -385,22 +387,22 @@ def _other_fields(
     if not fields:
         return
     wanted = {identifier(key.name): key for key in keys}
-    for each in fields:
-        name = each.word.text
+    for field in fields:
+        name = field.word.text
         try:
             right = field_type(part, wanted[name].type) if name in wanted else ""
         except UnportableError:
             continue
-        if right and _surely_other(each.type.text, right):
+        if right and _surely_other(field.type.text, right):
             text = f"`{part}::{name}` must be `{right}`"
             change = f"write `{right} {name}`".replace("& ", "&")
             help = f"{change}, or correct the interface in `{type_name}.yml`"
-            yield Difference(Word(text, each.type.span), help, change=change)
-    have = [each.word.text for each in fields]
+            yield Difference(Word(text, field.type.span), help, change=change)
+    have = [field.word.text for field in fields]
     if have != [*wanted] and sorted(have) == sorted(wanted):
         order = ", ".join(f"`{name}`" for name in wanted)
         text = f"the fields of `{part}` must be in the order {order}"
-        types = {each.word.text: each.type.text for each in fields}
+        types = {field.word.text: field.type.text for field in fields}
         right = "; ".join(f"{types[name]} {name}".replace("& ", "&") for name in wanted)
         change = f"write `struct {part} {{ {right}; }};`"
         help = f"{change}, or correct the interface in `{type_name}.yml`"
@@ -416,8 +418,8 @@ def _surely_other(text: str, wanted: str) -> bool:
 def _is_known(text: str) -> bool:
     """Whether a type consists of known types and standard containers of them only."""
     words = re.findall(r"[\w:]+", text)
-    return all(each in KNOWN or each in CONTAINERS or each.isdigit()
-               or each.removeprefix("smachac::") in STRUCTS for each in words)  # fmt: skip
+    return all(word in KNOWN or word in CONTAINERS or word.isdigit()
+               or word.removeprefix("smachac::") in STRUCTS for word in words)  # fmt: skip
 
 
 def _plain(text: str) -> str:

@@ -228,12 +228,14 @@ class _KnownNames:
     def with_parameter(self, name: str, spelling: Spelling) -> _KnownNames:
         """The names inside a lambda: its parameter hides names of the same root."""
         others = {
-            key: each for key, each in self.spellings.items() if key.partition(".")[0] != name
+            key: spelling
+            for key, spelling in self.spellings.items()
+            if key.partition(".")[0] != name
         }
         return replace(self, spellings={**others, name: spelling})
 
     def reads_any(self) -> bool:
-        return any(each.text in self.read for each in self.spellings.values())
+        return any(spelling.text in self.read for spelling in self.spellings.values())
 
     def term(self, name: str) -> Term:
         """A name as a term; it counts as read where its text is made."""
@@ -427,7 +429,7 @@ def _boolean(word: str, operands: list[Term], names: _KnownNames) -> Term:
     sign, own = ("||", OR) if word == "or" else ("&&", AND)
     # g++ warns of `&&` in `||` without brackets.
     test = CppText(
-        f" {sign} ".join(condition(each).at(AND + (own == OR)) for each in operands), own
+        f" {sign} ".join(condition(operand).at(AND + (own == OR)) for operand in operands), own
     )
     *first, last = operands
     type_ = joined([*(present(e.type) if word == "or" else e.type for e in first), last.type])

@@ -65,7 +65,7 @@ def identifier(name: str) -> str:
 def _ascii(letter: str) -> str:
     """A letter in ASCII: `ö` is `o`, `ß` is `ss`, `抓` is `u6293`."""
     parts = unicodedata.normalize("NFKD", "ss" if letter == "ß" else letter)
-    plain = "".join(each for each in parts if not unicodedata.combining(each))
+    plain = "".join(part for part in parts if not unicodedata.combining(part))
     if plain.isascii():
         return plain
     return f"u{ord(letter):04x}" if letter.isalnum() else "_"

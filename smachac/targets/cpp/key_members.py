@@ -33,15 +33,15 @@ def unknown_members(
             continue
         known = set(re.findall(r"\w+", fields.text))
         uses = list(re.finditer(rf"(?<![\w.>]){re.escape(named[1])}\s*\.\s*(\w+)", run.text))
-        used = {each[1] for each in uses}
+        used = {use[1] for use in uses}
         own = [name for name in (identifier(key.name) for key in keys) if name in known]
         left = [name for name in own if name not in used]
-        for each in uses:
-            if each[1] in known:
+        for use in uses:
+            if use[1] in known:
                 continue
-            near = guesser(own)(each[1])
+            near = guesser(own)(use[1])
             near = near or (left[0] if len(left) == len(used - known) == 1 else None)
-            word = run.word(each[1], *each.span(1))
+            word = run.word(use[1], *use.span(1))
             names = ", ".join(f"`{name}`" for name in own)
             yield ClassFault(kind=NO_KEY_MEMBER, name=word, near=near, more=struct,
                              file="" if near else names)  # fmt: skip

@@ -20,7 +20,7 @@ from smachac.targets.cpp.types import FIELDS, LISTED, STR, UnportableError, brac
 
 def listed(items: list[Term], kind: str) -> Term:
     """`[a, b]` and `(a, b)`; `kind` is `array` or `tuple`."""
-    item = joined([each.type for each in items])
+    item = joined([item.type for item in items])
     if item.name == "mixed":
         own = item
     elif items:
@@ -38,7 +38,7 @@ def listed(items: list[Term], kind: str) -> Term:
         size = size_of(wanted)
         if size is not None and size != len(items):
             raise UnportableError(f"the list has {len(items)} items instead of {size}")
-        texts = [each.spell(inside(wanted)).text for each in items]
+        texts = [item.spell(inside(wanted)).text for item in items]
         return CppText(braced(cpp(wanted), texts, array=size is not None))
 
     return Term(type=own, spell=spell)

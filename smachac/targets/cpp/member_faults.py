@@ -124,7 +124,7 @@ def member_faults(
     found = [*signature_faults(code, body)]
     yield from found
     head = _execute(code, body)
-    if head is None or any(each.kind in (WRONG_RESULT, WRONG_PARAMETERS) for each in found):
+    if head is None or any(fault.kind in (WRONG_RESULT, WRONG_PARAMETERS) for fault in found):
         return
     run = _body_of(body, head.end())
     unknown = [*unknown_members(code, body, run, head[1])] if run is not None else []
@@ -154,11 +154,11 @@ def signature_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
         return
     if _count(head[1]) not in (None, len(_arguments(code))):
         marked = head.span(1) if head[1].strip() else (head.start(), head.start() + len("execute"))
-        types = {each: each.split()[0].rpartition(":")[2] for each in _arguments(code)}
-        lacks = [each for each, name in types.items() if not re.search(rf"\b{name}\b", head[1])]
+        types = {argument: argument.split()[0].rpartition(":")[2] for argument in _arguments(code)}
+        lacks = [text for text, name in types.items() if not re.search(rf"\b{name}\b", head[1])]
         more = "has other parameters than its interface needs"
         if (_count(head[1]) or 0) + len(lacks) == len(_arguments(code)):
-            named = " and ".join(f"`{each}`" for each in lacks)
+            named = " and ".join(f"`{lack}`" for lack in lacks)
             more = f"lacks the parameter{'s' if len(lacks) > 1 else ''} {named}"
         place = body.word("execute", *marked)
         yield ClassFault(kind=WRONG_PARAMETERS, name=place, near=wanted, more=more)
@@ -198,7 +198,7 @@ def _count(parameters: str) -> int | None:
         text = shorter
     if re.search(r"[=<>\[\]{}]|\.\.\.", text):
         return None
-    pieces = [each.strip() for each in text.split(",")]
+    pieces = [part.strip() for part in text.split(",")]
     return 0 if pieces in ([""], ["void"]) else len(pieces)
 
 
@@ -211,20 +211,20 @@ def _body_of(body: Part, at: int) -> Part | None:
 def _unused(whole: Part, body: Part, run: Part, outcomes: Words) -> Iterator[ClassFault]:
     """The outcomes that no code in the header names, if every `return` of `execute` names one. A
     class with one outcome in use is not written yet."""
-    returned = [each[1] for each in _RETURN.finditer(run.text)]
-    known = {identifier(each.text) for each in outcomes}
+    returned = [match_[1] for match_ in _RETURN.finditer(run.text)]
+    known = {identifier(outcome.text) for outcome in outcomes}
     if not known.issuperset(re.findall(r"\bOutcome\s*::\s*(\w+)", body.text)):
         return  # a misspelt outcome is reported: it is probably the one that is not returned
     functions = _outcome_functions(body)
     if _ELSEWHERE.search(body.text) or functions is None:
         return
-    for each in returned:
-        called = re.fullmatch(r"\s*(\w+)\s*\(.*\)\s*", each, re.DOTALL)
+    for value in returned:
+        called = re.fullmatch(r"\s*(\w+)\s*\(.*\)\s*", value, re.DOTALL)
         inner = called is not None and called[1] in functions
-        if "Outcome::" not in each.replace(" ", "") and not inner:
+        if "Outcome::" not in value.replace(" ", "") and not inner:
             return
-    names = {each: identifier(each.text) for each in outcomes}
-    used = {each for each, name in names.items()
+    names = {outcome: identifier(outcome.text) for outcome in outcomes}
+    used = {word for word, name in names.items()
             if len(re.findall(rf"\b{re.escape(name)}\b", whole.text)) > 1}  # fmt: skip
     if len(used) < 2:
         return
@@ -265,11 +265,14 @@ def _at_execute(
 def _with_outcome(code: ClassCode, call: UnusedCall, outcome: str) -> str:
     """The statement that returns an outcome by the result of a call; empty if it is not known for
     which result: a failure is meant for false, unless it has the name of the method."""
-    failures = {each.name for each in code.type.outcomes
-                if each.failure or (each.failure is None and is_failure(each.name))}  # fmt: skip
+    failures = {
+        outcome.name
+        for outcome in code.type.outcomes
+        if outcome.failure or (outcome.failure is None and is_failure(outcome.name))
+    }
     named = call.method in (outcome, f"is_{outcome}", f"has_{outcome}")
-    other = next((each.name for each in code.type.outcomes
-                  if identifier(each.name) == call.outcome), "")  # fmt: skip
+    other = next((outcome.name for outcome in code.type.outcomes
+                  if identifier(outcome.name) == call.outcome), "")  # fmt: skip
     if not named and (outcome not in failures or other in failures):
         return ""
     wanted, text = f"Outcome::{identifier(outcome)}", call.word.text
@@ -323,9 +326,9 @@ _LOCAL = re.compile(r"(?:^|[;{}])\s*(?:const\s+)?[A-Za-z_][\w:]*(?:<[\w:<>, ]*>)
 def _local_value(run: Part, key: str, at: int, out: str) -> str:
     """The assignment of the local variable with the name of an output key, or of the only one with
     a word of it, that has a value at a place; empty if there is none."""
-    known = {each[1] for each in _LOCAL.finditer(_open_blocks(run.text[:at]))} - {"return"}
+    known = {match_[1] for match_ in _LOCAL.finditer(_open_blocks(run.text[:at]))} - {"return"}
     words = words_of(key)
-    near = [key] if key in known else [each for each in known if words & words_of(each)]
+    near = [key] if key in known else [value for value in known if words & words_of(value)]
     return f"{out}.{identifier(key)} = {near[0]};" if len(near) == 1 else ""
 
 
@@ -371,8 +374,8 @@ def _skipped(code: ClassCode, run: Part, parameters: str) -> Iterator[ClassFault
         for end in re.finditer(returned, run.text):
             for key in keys:
                 set_ = [
-                    each.start()
-                    for each in re.finditer(rf"\b{out}\s*\.\s*{identifier(key)}\b", run.text)
+                    match_.start()
+                    for match_ in re.finditer(rf"\b{out}\s*\.\s*{identifier(key)}\b", run.text)
                 ]
                 before = [at for at in set_ if at < end.start()]
                 if set_ and (not before or (len(before) == 1 and _only_if(run, before[0], end))):
@@ -414,7 +417,7 @@ def _later(run: Part, out: str, key: str, at: int) -> Word | None:
         return None
     before = _open_blocks(run.text[:at])
     words = re.findall(r"(?<![\w.>])[A-Za-z_]\w*", found[0][1])
-    if not words or any(re.search(rf"\b{each}\b", before) is None for each in words):
+    if not words or any(re.search(rf"\b{word}\b", before) is None for word in words):
         return None
     start = run.start + found[0].start()
     text = " ".join(run.source.text[start : run.start + found[0].end()].split())

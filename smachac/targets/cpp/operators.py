@@ -119,7 +119,7 @@ def _numbers(word: str, one: Type, other: Type, left: Term, right: Term) -> Term
 def _wholes(left: Term, right: Term) -> tuple[str, str]:
     """Two integers as arguments of a function with an overload for floats: one of them is typed."""
     first, second = whole(left).text, whole(right).text
-    if any(present(each.type) == INT and each.constant is None for each in (left, right)):
+    if any(present(term.type) == INT and term.constant is None for term in (left, right)):
         return first, second
     return f"std::int64_t{{{first}}}", second
 
@@ -149,8 +149,8 @@ def _joined_lists(kind: str, left: Term, right: Term) -> Term:
     item = join(inside(present(left.type)), inside(present(right.type)))
     type_ = Type(kind, (item,))
     texts = (
-        each.spell(type_).text if has(each.type, "never") else each.present()
-        for each in (left, right)
+        term.spell(type_).text if has(term.type, "never") else term.present()
+        for term in (left, right)
     )
     return fixed(type_, call(f"concat<{cpp(item)}>", *texts))
 
@@ -192,7 +192,7 @@ def _direct(word: str, left: Term, right: Term) -> CppText | None:
         whole = left if left.type == INT else right
         if not isinstance(whole.constant, int) or abs(whole.constant) > EXACT:
             return None
-        one, other = (_side(each, FLOAT if each is whole else each.type) for each in (left, right))
+        one, other = (_side(term, FLOAT if term is whole else term.type) for term in (left, right))
     elif len(floats) == 1 and (kinds <= set(DIRECT) or (kinds == {BOOL} and word in EQUAL)):
         one, other = _side(left, left.type), _side(right, right.type)
     else:
@@ -280,7 +280,7 @@ def _refuse_kinds(one: Type, other: Type) -> None:
     equal, in C++ they may be."""
     one, other = present(one), present(other)
     if one.name in SEQUENCES and other.name in SEQUENCES:
-        kinds = {"list" if each.name == "array" else each.name for each in (one, other)}
+        kinds = {"list" if type_.name == "array" else type_.name for type_ in (one, other)}
         if len(kinds) > 1:
             raise UnportableError(f"a {' is never equal to a '.join(sorted(kinds))}")
         _refuse_kinds(inside(one), inside(other))

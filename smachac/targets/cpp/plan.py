@@ -244,10 +244,10 @@ def _check(plan: Plan, scope: ContainerScope, around: ContainerScope | None) -> 
         for name, other in clashes(name for what, name in names if what == kind):
             text = f"the {kind}s `{other}` and `{name}` would both be named `{identifier(name)}`"
             plan.refuse(_named(node, name), UnportableError(text), kind, other, name)
-    for each in (node, *(child for child in node.children if isinstance(child, Leaf))):
-        for name, other in clashes(outcome_names(each)):
+    for child in (node, *(child for child in node.children if isinstance(child, Leaf))):
+        for name, other in clashes(outcome_names(child)):
             text = f"the outcomes `{other}` and `{name}` would both be named `{identifier(name)}`"
-            plan.refuse(each.span, UnportableError(text), "outcome", other, name)
+            plan.refuse(child.span, UnportableError(text), "outcome", other, name)
     if around is not None:
         _check_borders(plan, scope, around)
     if isinstance(node, Concurrence):

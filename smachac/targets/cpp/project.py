@@ -133,7 +133,7 @@ def project_files(machine: Machine, wanted: Project, header: Header) -> Files:
     name = stem(machine)
     if wanted.main:
         if header.parameters:
-            needed = " and ".join(f"`{each}`" for each in header.parameters)
+            needed = " and ".join(f"`{parameter}`" for parameter in header.parameters)
             raise OptionError(f"`main` is not possible: the states need {needed}; write main.cpp")
         folder = "src/" if wanted.package else ""
         files[f"{folder}main.cpp"] = _main(machine, f"{wanted.package}/" if wanted.package else "")

@@ -60,14 +60,14 @@ def _name(arm: Arm) -> str:
 def _check_names(robot: Robot, names: list[str]) -> None:
     taken: dict[str, str] = {}
     for arm, name in zip(robot.arms, names, strict=True):
-        for each in (name, f"{name}_joints", f"{name}_fingers"):
-            if each in taken:
+        for text in (name, f"{name}_joints", f"{name}_fingers"):
+            if text in taken:
                 raise UnportableError(
-                    f"the arms `{taken[each]}` and `{arm.name}` of `{robot.name}` would both have"
-                    f" the name `{each}`",
-                    *("arm", taken[each], arm.name),
+                    f"the arms `{taken[text]}` and `{arm.name}` of `{robot.name}` would both have"
+                    f" the name `{text}`",
+                    *("arm", taken[text], arm.name),
                 )
-            taken[each] = arm.name
+            taken[text] = arm.name
 
 
 def _arm(arm: Arm, name: str) -> Lines:
@@ -107,5 +107,5 @@ def _joint(joint: Joint, home: float) -> str:
 
 
 def _pose(pose: Pose) -> str:
-    position, rotation = (", ".join(map(cpp_float, each)) for each in pose)
+    position, rotation = (", ".join(map(cpp_float, row)) for row in pose)
     return f"{{{{{position}}}, {{{rotation}}}}}"

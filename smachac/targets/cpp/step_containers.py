@@ -271,7 +271,7 @@ def _machine(plan: StepPlan, node: StateMachine | Sequence) -> Lines:
 def _unended(plan: StepPlan) -> Lines:
     """The statement after a step of a child that has not ended with one of its outcomes."""
     child = f"nodes_[static_cast<std::size_t>({ACTIVE}) - 1]"
-    if all(isinstance(each, Leaf) for each in plan.node.children):  # their numbers follow
+    if all(isinstance(child, Leaf) for child in plan.node.children):  # their numbers follow
         child = f"{plan.number} + static_cast<std::size_t>({ACTIVE})"
     return [f"return run.unended({ACTIVE}, {plan.number}, {child}, result);"]
 
@@ -283,7 +283,7 @@ def _transition(plan: StepPlan, child: Node, outcome: str, code: str) -> Lines:
     if edge is None:
         return [f"return run.undeclared({ACTIVE}, {plan.number}, {number});"]
     if leads_to_child(edge, plan.container.names):
-        target = next(each for each in plan.node.children if each.name == edge.target)
+        target = next(child for child in plan.node.children if child.name == edge.target)
         to = f"State::{identifier(target.name)}, {plan.number}, {number}, {code}"
         return [f"return run.go({ACTIVE}, {to}, {plan.number_of(target)});"]
     return [f"return {_end(plan, child, plan.container.own_outcome(edge.target), code)};"]

@@ -33,9 +33,9 @@ class UnusedCall(NamedTuple):
 def unused_call(body: Part, run: Part, library: Library) -> UnusedCall | None:
     """The only call of a function that returns `bool` whose result `execute` does not use."""
     found = [
-        each
-        for each in _CALL.finditer(run.text)
-        if _returns_bool(body, each["object"], each["method"], library)
+        match_
+        for match_ in _CALL.finditer(run.text)
+        if _returns_bool(body, match_["object"], match_["method"], library)
     ]
     if len(found) != 1:
         return None

@@ -48,7 +48,9 @@ def class_code(type_: StateType) -> ClassCode | None:
         type=type_,
         name=f"::{given['class'].removeprefix('::')}",
         header=given["header"],
-        parameters=tuple(_parameter(each) for each in parameters(given.get("with", "")) if each),
+        parameters=tuple(
+            _parameter(parameter) for parameter in parameters(given.get("with", "")) if parameter
+        ),
     )
 
 
@@ -60,23 +62,25 @@ def _parameter(text: str) -> str:
 
 def named_classes(code: ClassCode) -> list[str]:
     """The qualified names of a class and of the types of its parameters, `my_robot::Arm`."""
-    types = (_type_of(each).strip("&* ").removeprefix("const ") for each in code.parameters)
-    return [each.partition("<")[0].strip().removeprefix("::") for each in (code.name, *types)]
+    types = (
+        _type_of(parameter).strip("&* ").removeprefix("const ") for parameter in code.parameters
+    )
+    return [type_.partition("<")[0].strip().removeprefix("::") for type_ in (code.name, *types)]
 
 
 def named_apart(taken: Sequence[str], others: Iterable[str]) -> tuple[str, ...]:
     """Parameters of which none has the name of another parameter of another type: a number is added
     to its name."""
-    types = {argument(each): _type_of(each) for each in others}
+    types = {argument(other): _type_of(other) for other in others}
     found = []
-    for each in taken:
-        type_, name = _type_of(each), argument(each)
+    for text in taken:
+        type_, name = _type_of(text), argument(text)
         new, number = name, 1
         while types.get(new, type_) != type_:
             number += 1
             new = f"{name}_{number}"
         types[new] = type_
-        found.append(f"{each.removesuffix(name)}{new}")
+        found.append(f"{text.removesuffix(name)}{new}")
     return tuple(found)
 
 
@@ -174,7 +178,7 @@ def _step(
 
 def stops(type_: StateType) -> bool:
     """Whether `execute` has a parameter for requests to stop."""
-    return type_.blocking or any(each.name == PREEMPTED for each in type_.outcomes)
+    return type_.blocking or any(outcome.name == PREEMPTED for outcome in type_.outcomes)
 
 
 def _input(scope: ContainerScope, key: Key, outer: str) -> str:
@@ -218,7 +222,7 @@ def _output(scope: ContainerScope, key: Key, outer: str) -> str:
 
 def _variables(type_: StateType, leaf: Leaf) -> list[str]:
     """The arguments for the variables of the interface, in its order, with its defaults."""
-    set_: dict[str, Data] = {each.name: each.value.data for each in leaf.variables}
+    set_: dict[str, Data] = {variable.name: variable.value.data for variable in leaf.variables}
     found = []
     for name, variable in type_.variables.items():
         if name not in set_ and variable.default is not None:
@@ -260,10 +264,10 @@ def interface_hash(type_: StateType) -> str:
     """A hash of all parts of an interface that its class depends on."""
     told = [
         type_.name,
-        *(f"var {name} {plain(each.type)}" for name, each in type_.variables.items()),
+        *(f"var {name} {plain(variable.type)}" for name, variable in type_.variables.items()),
         *(f"in {key.name} {plain(key.type)}" for key in type_.input_keys),
         *(f"out {key.name} {plain(key.type)}" for key in type_.output_keys),
-        *(f"outcome {each.name}" for each in type_.outcomes),
+        *(f"outcome {outcome.name}" for outcome in type_.outcomes),
         f"stop {stops(type_)}",
     ]
     return f"0x{zlib.crc32(chr(10).join(told).encode()):08x}U"

@@ -216,18 +216,20 @@ def property_tones(machine: Machine) -> dict[str, str]:
         return {}
     found: dict[str, str] = {}
     judgements = Context(machine).judgements
-    for each in judgements:
-        found |= dict.fromkeys(each.states, "neutral")
-    for each in judgements:
-        if each.counterexample is not None:
-            found |= dict.fromkeys((visit.path for visit in each.counterexample.visits), "failure")
+    for judgement in judgements:
+        found |= dict.fromkeys(judgement.states, "neutral")
+    for judgement in judgements:
+        if judgement.counterexample is not None:
+            found |= dict.fromkeys(
+                (visit.path for visit in judgement.counterexample.visits), "failure"
+            )
     return found
 
 
 def _exit(place: Position, outcome: str, id: str) -> str:
     """An end of a container: double lines if the whole machine ends with it."""
     state = place.state
-    found = next((each for each in state.outer.outcomes if each.name == outcome), None)
+    found = next((result for result in state.outer.outcomes if result.name == outcome), None)
     line, fill = TONES[tone(outcome, state.node if found is None else state.outer)]
     label = html(outcome)
     if isinstance(state.node, Concurrence) and outcome == state.node.default_outcome:
@@ -256,7 +258,7 @@ def _arrows(place: Position, depth: int | None) -> Iterator[str]:
     container = place.state.node
     if isinstance(container, Leaf):
         return
-    drawn = {each.state.name: _piece(each, depth) for each in place.inside()}
+    drawn = {position.state.name: _piece(position, depth) for position in place.inside()}
     if isinstance(container, Concurrence) and drawn:
         level = "; ".join(f'"{piece.entry.id}"' for piece in drawn.values())
         yield f"{{ rank=same; {level} }}"

@@ -52,7 +52,7 @@ def tone(outcome: str, node: Node) -> str:
     """The tone of an outcome of a state, a key of `TONES`: failure if it is one, by its interface
     too, else what its name suggests."""
     found = _tone_of_name(outcome)
-    declared = next((each.failure for each in node.outcomes if each.name == outcome), None)
+    declared = next((result.failure for result in node.outcomes if result.name == outcome), None)
     if declared is None:
         return "failure" if found != "warning" and fails(node, outcome) else found
     return "failure" if declared else "neutral" if found == "failure" else found

@@ -76,12 +76,12 @@ def machine_model(
         "findings": [finding_data(item, view) for item in findings],
         "properties": [
             {
-                "name": each.property.name,
-                "text": in_words(each.property.form),
-                "verdict": each.verdict,
-                "states": list(dict.fromkeys(map(view.state, each.states))),
+                "name": judgement.property.name,
+                "text": in_words(judgement.property.form),
+                "verdict": judgement.verdict,
+                "states": list(dict.fromkeys(map(view.state, judgement.states))),
             }
-            for each in (context.judgements if machine.properties else ())
+            for judgement in (context.judgements if machine.properties else ())
         ],
     }
 
@@ -112,13 +112,13 @@ def _node(
         "snippet": snippet(node.span, hidden),
         "outcomes": [
             {
-                "name": each.name,
-                "failure": fails(outer, each.name),
-                "success": each.name in good,
-                "doc": each.doc,
-                **({"field": field} if (field := state.field_of(each.name)) else {}),
+                "name": outcome.name,
+                "failure": fails(outer, outcome.name),
+                "success": outcome.name in good,
+                "doc": outcome.doc,
+                **({"field": field} if (field := state.field_of(outcome.name)) else {}),
             }
-            for each in outer.outcomes
+            for outcome in outer.outcomes
         ],
         "inputs": _keys(state, node.inputs, context.types.inputs, context.secret_keys),
         "outputs": _keys(state, node.outputs, context.types.outputs, context.secret_keys),
@@ -201,7 +201,10 @@ def form_of(path: str, container: Container) -> dict[str, Any]:
                 "rules": [
                     {
                         "outcome": rule.outcome,
-                        "when": [[f"{path}/{each.child}", each.outcome] for each in rule.when],
+                        "when": [
+                            [f"{path}/{condition.child}", condition.outcome]
+                            for condition in rule.when
+                        ],
                     }
                     for rule in container.rules
                 ],
@@ -244,9 +247,10 @@ def finding_data(item: Diagnostic, view: Written | None = None) -> dict[str, Any
         "node": place if view is None or place is None else _place(view, place),
         "related": [
             dict(
-                zip(("file", "line"), place_in_script(each.span), strict=True), message=each.message
+                zip(("file", "line"), place_in_script(related.span), strict=True),
+                message=related.message,
             )
-            for each in item.related
+            for related in item.related
         ],
     }
 
@@ -287,13 +291,13 @@ def snippet(span: Span, hidden: Sequence[Span] = ()) -> str:
 
 def _without(source: Source, hidden: Sequence[Span]) -> Callable[[int], str]:
     """The lines of a file by number, with `SECRET` in place of the hidden parts."""
-    parts = [each for each in hidden if each.source is source]
+    parts = [span for span in hidden if span.source is source]
 
     def shown(number: int) -> str:
         text, begin = source.line(number), source.line_starts[number - 1]
-        for each in sorted(parts, key=lambda part: -part.start):
+        for part in sorted(parts, key=lambda part: -part.start):
             indented = len(text) - len(text.lstrip(" "))
-            start, end = max(each.start - begin, indented), min(each.end - begin, len(text))
+            start, end = max(part.start - begin, indented), min(part.end - begin, len(text))
             if start < end:
                 text = text[:start] + SECRET + text[end:]
         return text

@@ -74,8 +74,8 @@ def _inside(place: _Open, picture: _Picture, dashed: list[str]) -> Iterator[str 
     the states that are not known exactly go into `dashed`."""
     container, pad = place.state, "  " * (place.state.level + 1)
     states = [picture.view.states[path] for path in container.children]
-    ids = {each.path: picture.ids.new(f"{place.id}__{each.name}") for each in states}
-    arrows = _arrows(container, {each.path: each for each in states}, ids)
+    ids = {state.path: picture.ids.new(f"{place.id}__{state.name}") for state in states}
+    arrows = _arrows(container, {state.path: state for state in states}, ids)
     parallel = isinstance(container.node, Concurrence)
     # Mermaid's layout fails for some composite states that follow a simple one.
     ordered = states if parallel else sorted(states, key=picture.is_closed)
@@ -125,10 +125,10 @@ def label(text: str) -> str:
     found: list[str] = []
     at = 0
     for plain in _PLAIN.finditer(text):
-        found += [_code(each) for each in text[at : plain.start()]]
+        found += [_code(word) for word in text[at : plain.start()]]
         found.append(plain[0])
         at = plain.end()
-    found += [_code(each) for each in text[at:]]
+    found += [_code(word) for word in text[at:]]
     return "".join(found) or "#160;"
 
 
@@ -168,7 +168,9 @@ def _rules(state: WrittenState, outcome: str) -> str:
     found = []
     for rule in node.rules:
         if rule.outcome == outcome:
-            when = [f"{label(each.child)} = {label(each.outcome)}" for each in rule.when]
+            when = [
+                f"{label(condition.child)} = {label(condition.outcome)}" for condition in rule.when
+            ]
             found.append(" and ".join(when) or "always")
     if outcome == node.default_outcome:
         found.append("otherwise")

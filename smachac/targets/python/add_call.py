@@ -59,7 +59,7 @@ def adapted(text: str, node: Node, parent: Container, depth: int) -> str:
     outcomes = [edge.outcome for edge in node.transitions]
     if not isinstance(parent, Concurrence) and node.catches in outcomes:
         quoted = (f"'{node.catches}'", f'"{node.catches}"')
-        if not any(each in text[found.call] for each in quoted):
+        if not any(word in text[found.call] for word in quoted):
             raise NotAddedError(f"does not print the transition of `{node.catches}`")
     start, end = found.state.start, found.state.stop
     return f"{text[:start]}{flat(made)}{text[end:]}"
@@ -72,11 +72,13 @@ def _check_owner(text: str, node: Node, parent: Container) -> None:
     that is right if the script writes where each outcome leads.
     """
     own = structure.kind(parent)
-    others = [each for each in _ADDING if each != own and f"smach.{each}.add(" in text]
+    others = [word for word in _ADDING if word != own and f"smach.{word}.add(" in text]
     if isinstance(parent, Iterator) or not others:
         return
-    if isinstance(parent, Sequence) and all(each.origin == "written" for each in node.transitions):
-        others = [each for each in others if each != StateMachine.__name__]
+    if isinstance(parent, Sequence) and all(
+        transition.origin == "written" for transition in node.transitions
+    ):
+        others = [other for other in others if other != StateMachine.__name__]
     try:
         tree = parse_module(text)
     except SyntaxError:
@@ -123,7 +125,7 @@ def _state_of(call: ast.Call, name: str) -> ast.expr | None:
     if call.func.attr not in ("add", "set_contained_state"):
         return None
     given = dict(zip(("label", "state"), call.args, strict=False))
-    given |= {each.arg: each.value for each in call.keywords if each.arg}
+    given |= {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg}
     match given.get("label"):
         case ast.Constant(value=value) if value == name:
             return given.get("state")

@@ -83,7 +83,7 @@ def _key_help(found: Finding, type_: StateType) -> str | None:
     if kind != "undefined":
         return None
     lists = {"input": type_.input_keys, "output": type_.output_keys}
-    what = [part for part, keys in lists.items() if names[0] in [each.name for each in keys]]
+    what = [part for part, keys in lists.items() if names[0] in [key.name for key in keys]]
     if not what:
         return None
     text, at = found.span.source.text, found.span.start
@@ -188,16 +188,16 @@ class ModuleParts:
     def define(self, text: str, page: Page, block: str, node: Node) -> None:
         """Report a class or function with two different definitions: only the last one counts."""
         tree = parsed(text)
-        for each in tree.body if isinstance(tree, ast.Module) else ():
-            if isinstance(each, ast.ClassDef | ast.FunctionDef):
-                new = ast.dump(each)
-                old, first = self.defined.setdefault(each.name, (new, node))
+        for inner in tree.body if isinstance(tree, ast.Module) else ():
+            if isinstance(inner, ast.ClassDef | ast.FunctionDef):
+                new = ast.dump(inner)
+                old, first = self.defined.setdefault(inner.name, (new, node))
                 if old != new:
-                    what = "class" if isinstance(each, ast.ClassDef) else "function"
-                    line = text.splitlines()[each.lineno - 1]
+                    what = "class" if isinstance(inner, ast.ClassDef) else "function"
+                    line = text.splitlines()[inner.lineno - 1]
                     span = self._place(page, block, line) or node.span
                     states = ((first.name, first.span), (node.name, node.span))
-                    self.note(defined_twice(span, what, each.name, states))
+                    self.note(defined_twice(span, what, inner.name, states))
 
     def code(self, page: Page, block: str, node: Node, *, alone: bool = False) -> str:
         """A block of Python as Python 3; `alone`: without the blocks of included templates."""
@@ -240,16 +240,16 @@ class ModuleParts:
 
     def _written(self, page: Page, line: str) -> _WrittenLine | None:
         """The line of a template of the page that has most probably printed a line."""
-        found = [each for one in walk_pages(page)
+        found = [other for one in walk_pages(page)
                  if (source := self.blocks.source(one.file)) is not None
-                 for each in _written_lines(source, line) if each.literal]  # fmt: skip
-        return max(found, key=lambda each: each.literal, default=None)
+                 for other in _written_lines(source, line) if other.literal]  # fmt: skip
+        return max(found, key=lambda line: line.literal, default=None)
 
     def _unquoted(self, page: Page, text: str, line: str) -> Diagnostic | None:
         """SM605 for a look-up `{{ x }}` of a template without quotes, if the printed text is Python
         with them. `line` is the first line of `text` that is no Python."""
-        for each in walk_pages(page):
-            source = self.blocks.source(each.file)
+        for other in walk_pages(page):
+            source = self.blocks.source(other.file)
             if source is None:
                 continue
             tags = [tag for written in _written_lines(source, line) for tag in written.tags]
@@ -276,8 +276,8 @@ class ModuleParts:
 
     def _place(self, page: Page, block: str, line: str) -> Span | None:
         """The place of a printed line in a template; if it is not found, the place of the block."""
-        for each in walk_pages(page):
-            found = self.blocks.line_span(each.file, line)
+        for other in walk_pages(page):
+            found = self.blocks.line_span(other.file, line)
             if found is not None:
                 return found
         return self.blocks.block_span(page.file, block)

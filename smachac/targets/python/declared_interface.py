@@ -80,9 +80,9 @@ def _constructor_faults(type_: StateType, facts: ClassFacts, node: bool) -> Iter
     and the `node` of ROS 2 to a class with this parameter (states.py)."""
     if facts.name is None or facts.parameters is None:
         return
-    known = {each.word.text for each in facts.parameters}
+    known = {parameter.word.text for parameter in facts.parameters}
     guess = guesser(sorted(known - type_.variables.keys()))
-    passed = {name for name, each in type_.variables.items() if not each.called_first}
+    passed = {name for name, variable in type_.variables.items() if not variable.called_first}
     if "variables" in type_.given:
         return
     unknown = sorted(passed - known)
@@ -102,9 +102,9 @@ def _constructor_faults(type_: StateType, facts: ClassFacts, node: bool) -> Iter
         place = next((p.word.span for p in facts.parameters if p.word.text == near), None)
         word = Word(name, place or facts.name.span)
         yield ClassFault(kind=NO_PARAMETER, name=word, near=near, variable=name)
-    for each in required:
-        if each.word.text not in meant:
-            yield ClassFault(kind=REQUIRED_PARAMETER, name=each.word)
+    for parameter in required:
+        if parameter.word.text not in meant:
+            yield ClassFault(kind=REQUIRED_PARAMETER, name=parameter.word)
 
 
 def _renamed(kind: FaultKind, parameter: Parameter, variable: str) -> ClassFault:

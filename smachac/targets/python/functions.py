@@ -204,7 +204,7 @@ def _calls(
 ) -> dict[str, Call]:
     """The calls of one function for containers of one form; none if they differ in too much."""
     path, node = occurrences[0]
-    columns = zip(*(_values(at, each, uses) for at, each in occurrences), strict=True)
+    columns = zip(*(_values(at, container, uses) for at, container in occurrences), strict=True)
     varying: dict[object, list[tuple[_Value, ...]]] = {}
     for number, column in enumerate(columns):
         texts = tuple(value.text for value in column)
@@ -222,7 +222,7 @@ def _calls(
         parameters |= {(column[0].state, column[0].name): name for column in equal}
         for given, value in zip(arguments, equal[0], strict=True):
             given[name] = value.data
-    docs = {each.doc for _, each in occurrences}
+    docs = {container.doc for _, container in occurrences}
     function = _function(path, node)
     function = replace(
         function,
@@ -301,7 +301,10 @@ def _words(container: Container, types: Mapping[str, StateType]) -> set[str]:
     """The words that the code of a container may use as names."""
     found = {"smach"}
     for _, node in walk(container):
-        found |= {node.type, *_WORD.findall(" ".join(each.text for each in expressions(node)))}
+        found |= {
+            node.type,
+            *_WORD.findall(" ".join(expression.text for expression in expressions(node))),
+        }
         if node.type in types:
             found |= set(_WORD.findall(types[node.type].code.get("python", "")))
     return found
@@ -345,7 +348,7 @@ def stand_alone(
     """Whether a module has these functions, each name once; those `apart` are not in the tree.
     `with_names`: and none of them uses a variable of another one, as the text that a template of
     the user prints may do."""
-    top = Counter(name for each in tree.body for name in _bound(each))
+    top = Counter(name for node in tree.body for name in _bound(node))
     top.update(apart)
     if any(top[name] != 1 for name in functions):
         return False
@@ -353,9 +356,9 @@ def stand_alone(
         return True
     variables: dict[str, set[str]] = {}
     used: dict[str, set[str]] = {}
-    for each in tree.body:
-        if isinstance(each, ast.FunctionDef) and each.name in functions:
-            variables[each.name], used[each.name] = _names(each)
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef) and node.name in functions:
+            variables[node.name], used[node.name] = _names(node)
     everywhere = Counter(name for names in variables.values() for name in names)
     return not any(
         everywhere[name] and name not in variables[function] and name not in top

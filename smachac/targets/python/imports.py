@@ -87,7 +87,7 @@ def class_imports(classes: Mapping[str, str], levels: int) -> tuple[list[str], s
     """The code that imports the user's classes of states, `module:Class` with the name that the
     program gives it, and the imports that it needs. `levels`: the modules are in the folder so many
     levels above that of the program."""
-    pairs = [each.partition(":")[::2] for each in classes]
+    pairs = [class_.partition(":")[::2] for class_ in classes]
     if not pairs:
         return [], ""
     listed = names(sorted({name for module, _ in pairs for name in _packages(module)}))
@@ -148,7 +148,7 @@ class ProgramNames:
                 case ast.ImportFrom(module=str(module), names=[ast.alias(name="*")]):
                     self.everything.add(module)
                 case ast.Import(names=names) | ast.ImportFrom(names=names):
-                    self.bound.update(each.asname or each.name.partition(".")[0] for each in names)
+                    self.bound.update(name.asname or name.name.partition(".")[0] for name in names)
 
 
 def unbound_names(
@@ -178,7 +178,11 @@ def unbound_names(
 
 def expression_texts(machine: Machine) -> list[str]:
     """The code of the script, each text once."""
-    found = (each.text.strip() for _, node in walk(machine.root) for each in expressions(node))
+    found = (
+        expression.text.strip()
+        for _, node in walk(machine.root)
+        for expression in expressions(node)
+    )
     return [*dict.fromkeys(found)]
 
 
@@ -189,9 +193,9 @@ def type_texts(machine: Machine) -> set[str]:
     code: set[str] = set()
     for _, node in walk(machine.root):
         held = node.variables if isinstance(node, Leaf) else ()
-        own = [each.value.data for each in held if each.role in DEFINITION_KINDS]
-        for each in expressions(node):
-            (types if each in own else code).add(each.text.strip())
+        own = [variable.value.data for variable in held if variable.role in DEFINITION_KINDS]
+        for expression in expressions(node):
+            (types if expression in own else code).add(expression.text.strip())
     return types - code
 
 

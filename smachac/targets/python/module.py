@@ -190,7 +190,7 @@ def _text(
     }
     text = _rendered(template, variables, imports, own, module) + "\n"
     own_code = uses_own_templates(machine, context.library) and built and not whole
-    deep = any(sum(map(each.count, "([{")) > MOST_BRACKETS for each in expressions)
+    deep = any(sum(map(expression.count, "([{")) > MOST_BRACKETS for expression in expressions)
     frame, left_out = _frame(text, () if deep or own_code else (code, function_code))
     if code not in left_out.values() and lost(states, text):
         span = module.blocks.block_span(template, "body") or machine.root.span
@@ -198,7 +198,7 @@ def _text(
     if built and not whole and texts["main_def"]:
         return None
     tidy, tree = _checked(frame, template, machine, module)
-    named = [each.name for each in module.functions.values()] if not whole else []
+    named = [function.name for function in module.functions.values()] if not whole else []
     apart = named if function_code in left_out.values() else []
     if named and not stand_alone(tree, ["build", *named], apart, with_names=bool(own_code)):
         return None

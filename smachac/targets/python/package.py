@@ -30,7 +30,7 @@ def package_files(
     """The files of a package: the program `text` first."""
     program, mark = stem(machine), made_by(machine)
     needed = ["rclpy", *message_packages(text)]
-    depends = "".join(f"  <exec_depend>{each}</exec_depend>\n" for each in needed)
+    depends = "".join(f"  <exec_depend>{text}</exec_depend>\n" for text in needed)
     return {
         f"{name}/{program}.py": text,
         f"{name}/__init__.py": f"# {mark}\n",
@@ -90,15 +90,15 @@ setup(
 def _launch(machine: Machine, name: str, program: str, parameters: tuple[RosParameter, ...]) -> str:
     """The launch file: each parameter of the node is an argument."""
     declared = "".join(
-        f"\n            DeclareLaunchArgument({string(each.name)},"
-        f" default_value={string(_yaml(each.default))}),"
-        for each in parameters
+        f"\n            DeclareLaunchArgument({string(parameter.name)},"
+        f" default_value={string(_yaml(parameter.default))}),"
+        for parameter in parameters
     )
     given = "".join(
-        f"\n                        {string(each.name)}: ParameterValue(\n"
-        f"                            LaunchConfiguration({string(each.name)}),"
-        f" value_type={_type(each.default)}\n                        ),"
-        for each in parameters
+        f"\n                        {string(parameter.name)}: ParameterValue(\n"
+        f"                            LaunchConfiguration({string(parameter.name)}),"
+        f" value_type={_type(parameter.default)}\n                        ),"
+        for parameter in parameters
     )
     lists = "from typing import List\n\n" if "List[" in given else ""
     imports = LAUNCH_IMPORTS if parameters else ""

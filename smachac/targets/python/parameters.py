@@ -74,15 +74,15 @@ RESERVED = frozenset(
 
 def ros_parameters(machine: Machine, taken: Collection[str]) -> RosParameters:
     """The parameters of the node of a machine; `taken` are names that variables must not have."""
-    params = {each.value.span: each for each in machine.params}
+    params = {param.value.span: param for param in machine.params}
     if not params:
         return RosParameters()
-    found = [(each, _look_ups(each.value, params)) for each in _values(machine)]
+    found = [(value, _look_ups(value.value, params)) for value in _values(machine)]
     floats, choices = _limits(found)
     variables = {
-        span: _variable(each.name, taken)
-        for span, each in params.items()
-        if each.name.isidentifier() and _has_ros_type(each.value.data)
+        span: _variable(param.name, taken)
+        for span, param in params.items()
+        if param.name.isidentifier() and _has_ros_type(param.value.data)
     }
     # Where the type of the value matters, 5 is not 5.0.
     exact = {
@@ -92,33 +92,33 @@ def ros_parameters(machine: Machine, taken: Collection[str]) -> RosParameters:
     }
     uses: dict[Place, Use] = {}
     fixed = [
-        FixedUse(field=each.field, span=each.word.span, param=params[each.value])
-        for each in machine.fixed_params
-        if each.value in params
+        FixedUse(field=param.field, span=param.word.span, param=params[param.value])
+        for param in machine.fixed_params
+        if param.value in params
     ]
-    for each, look_ups in found:
-        data, names = each.value.data, dict[str, None]()
+    for value, look_ups in found:
+        data, names = value.value.data, dict[str, None]()
         for look_up in look_ups:
             known = exact if look_up.path or look_up.parts else variables
-            code = None if each.fixed else _code(look_up, known)
+            code = None if value.fixed else _code(look_up, known)
             if code is not None:
                 data = _replaced(data, look_up.path, code.data)
                 names |= dict.fromkeys(code.names)
             fixed += [
-                FixedUse(field=each.name, span=each.span, param=params[span])
+                FixedUse(field=value.name, span=value.span, param=params[span])
                 for span in dict.fromkeys(part.span for part in (look_up, *_params_of(look_up)))
                 if span in params and (code is None or span not in known)
             ]
         if names:
-            uses[each.path, each.name] = Use(data=data, names=tuple(names))
+            uses[value.path, value.name] = Use(data=data, names=tuple(names))
     used = {name for use in uses.values() for name in use.names}
     declared = [
         RosParameter(
             name=variables[span],
-            default=_default(each.value.data, span in floats),
+            default=_default(param.value.data, span in floats),
             choices=choices.get(span, ()),
         )
-        for span, each in params.items()
+        for span, param in params.items()
         if variables.get(span) in used
     ]
     return RosParameters(declared=tuple(declared), uses=uses, fixed=tuple(dict.fromkeys(fixed)))
@@ -163,14 +163,14 @@ def _values(machine: Machine) -> Iterator[_Value]:
 def _look_ups(value: Value, params: Mapping[Span, Param]) -> list[LookUp]:
     """The parts of a value that are made of params of the script, without parts of other parts."""
     found: list[LookUp] = []
-    for each in (LookUp(span=value.span, data=value.data), *value.look_ups):
-        if found and each.path[: len(found[-1].path)] == found[-1].path:
+    for up in (LookUp(span=value.span, data=value.data), *value.look_ups):
+        if found and up.path[: len(found[-1].path)] == found[-1].path:
             continue
-        param = params.get(each.span)
-        if any(part.span in params for part in _params_of(each)) or (
-            param is not None and not each.parts and param.value.data == each.data
+        param = params.get(up.span)
+        if any(part.span in params for part in _params_of(up)) or (
+            param is not None and not up.parts and param.value.data == up.data
         ):
-            found.append(each)
+            found.append(up)
     return found
 
 
@@ -180,13 +180,13 @@ def _limits(
     """The params that must be floats, and the values that interfaces allow for params."""
     floats: set[Span] = set()
     choices: dict[Span, tuple[int | str, ...]] = {}
-    for each, look_ups in found:
+    for value, look_ups in found:
         for look_up in look_ups:
             if look_up.path or look_up.parts:
                 continue
-            if _plain(each.type).name == "float":
+            if _plain(value.type).name == "float":
                 floats.add(look_up.span)
-            allowed = _choices(each.type)
+            allowed = _choices(value.type)
             if allowed:
                 before = choices.get(look_up.span, allowed)
                 choices[look_up.span] = tuple(one for one in before if one in allowed)
@@ -226,14 +226,14 @@ def _replaced(data: Data, path: tuple[str | int, ...], new: Data) -> Data:
         case Struct(entries=entries):
             return Struct(
                 entries=tuple(
-                    (key, _replaced(each, rest, new) if key == first else each)
-                    for key, each in entries
+                    (key, _replaced(value, rest, new) if key == first else value)
+                    for key, value in entries
                 )
             )
         case tuple():
             return tuple(
-                _replaced(each, rest, new) if number == first else each
-                for number, each in enumerate(data)
+                _replaced(value, rest, new) if number == first else value
+                for number, value in enumerate(data)
             )
     return data
 
@@ -241,7 +241,7 @@ def _replaced(data: Data, path: tuple[str | int, ...], new: Data) -> Data:
 def fixed_uses(parameters: RosParameters) -> Iterator[Diagnostic]:
     """The findings for params that are fixed somewhere: warnings if they are parameters of the node
     as well, which then have effect elsewhere only, else notes."""
-    declared = {each.name for each in parameters.declared}
+    declared = {parameter.name for parameter in parameters.declared}
     for use in parameters.fixed:
         found = fixed_param(use.span, use.field, use.param.name, use.param.value.span)
         settable = use.param.name in declared or f"{use.param.name}_" in declared
@@ -255,7 +255,7 @@ def _variable(name: str, taken: Collection[str]) -> str:
 def _has_ros_type(data: Data) -> bool:
     """Whether ROS has a parameter type for a value."""
     if isinstance(data, tuple):
-        kinds = {type(each) for each in data}
+        kinds = {type(value) for value in data}
         return len(kinds) == 1 and kinds <= {bool, int, float, str}
     return isinstance(data, bool | int | float | str)
 
@@ -277,7 +277,7 @@ def _choices(type_: Type) -> tuple[int | str, ...]:
     plain = _plain(type_)
     if plain.name != "one_of":
         return ()
-    return tuple(each for each in plain.args if isinstance(each, int | str))
+    return tuple(argument for argument in plain.args if isinstance(argument, int | str))
 
 
 NO_NODE: Mapping[str, object] = {"build_parameters": "", "main_parameters": ""}
@@ -290,14 +290,20 @@ def node_variables(
     """The variables of the template of a node: the parameters of its functions, the values that its
     parameters may have, the statements that run the machine in the variable `root`, and the
     outcomes of failure."""
-    outcomes = [each.name for each in machine.root.outcomes]
+    outcomes = [outcome.name for outcome in machine.root.outcomes]
     failures = [name for name in outcomes if is_failure(name) or name == PREEMPTED]
-    given = (("", f"{each.name}={flat(literal(each.default))}") for each in settable.declared)
+    given = (
+        ("", f"{parameter.name}={flat(literal(parameter.default))}")
+        for parameter in settable.declared
+    )
     head = Group("def build(", (("", "node"), *given), "):")
     choices = [
-        (each.name, Group("[", tuple(("", flat(literal(one))) for one in each.choices), "]"))
-        for each in settable.declared
-        if each.choices
+        (
+            parameter.name,
+            Group("[", tuple(("", flat(literal(one))) for one in parameter.choices), "]"),
+        )
+        for parameter in settable.declared
+        if parameter.choices
     ]
     limits = [("choices=", mapping(choices))] if choices else []
     declared = call("parameters.declared", [("", "node"), ("", "build"), *limits])
@@ -317,13 +323,13 @@ def node_variables(
 
 def _serving(machine: Machine, root: str, action: RosType) -> str:
     """The statements that offer a machine as an action."""
-    outcomes = [each.name for each in machine.root.outcomes]
+    outcomes = [outcome.name for outcome in machine.root.outcomes]
     failures = [name for name in outcomes if is_failure(name)]
     good = [name for name in outcomes if name not in (*failures, PREEMPTED)]
     server = call(
         "serving.ActionServerWrapper",
         [
-            *(("", each) for each in ("node", string(machine.root.name), action.name, root)),
+            *(("", text) for text in ("node", string(machine.root.name), action.name, root)),
             ("succeeded_outcomes=", names(good)),
             ("aborted_outcomes=", names(failures)),
             ("preempted_outcomes=", names([PREEMPTED] if PREEMPTED in outcomes else [])),

@@ -103,18 +103,20 @@ def unsupported(machine: Machine, ros: Ros) -> Iterator[Diagnostic]:
             message = f"{shown} of {node.type} needs ROS {other}"
             use = "remove it"
             if known is not None and known.required:
-                choices = [each for each in known.type.args if needed.get(str(each)) != other]
-                use = f"write {either(f'{held.name}: {each}' for each in choices)}"
+                choices = [
+                    argument for argument in known.type.args if needed.get(str(argument)) != other
+                ]
+                use = f"write {either(f'{held.name}: {choice}' for choice in choices)}"
             help = f"{use}, or set `ros = {other}` in the project file"
             place = (node.name, held.name)
             yield unsupported_by_target(held.value.span, language, message, help, place)
-        for each in expressions(node):
-            if not any(name in each.text for name in OTHER_MODULES[ros]):
+        for expression in expressions(node):
+            if not any(name in expression.text for name in OTHER_MODULES[ros]):
                 continue
-            tree = parsed(each.text.strip())
+            tree = parsed(expression.text.strip())
             used = other_modules(tree, ros) if isinstance(tree, ast.Module) else ()
             for name in dict.fromkeys(name for _, name in used):
-                yield other_version(each.span, name, ros)
+                yield other_version(expression.span, name, ros)
 
 
 def other_modules(tree: ast.AST, ros: Ros) -> Iterator[tuple[int, str]]:
@@ -133,7 +135,7 @@ def other_modules(tree: ast.AST, ros: Ros) -> Iterator[tuple[int, str]]:
 
 
 def _roots(names: Iterable[ast.alias]) -> Iterator[str]:
-    return (each.name.partition(".")[0] for each in names)
+    return (name.name.partition(".")[0] for name in names)
 
 
 def other_version(span: Span, name: str, ros: Ros) -> Diagnostic:

@@ -295,11 +295,14 @@ def failure_text(error: BaseException) -> str:
             break
         error = cause
     frames = traceback.extract_tb(error.__traceback__)
-    ours = [at for at, each in enumerate(frames, 1) if each.filename.startswith(HIDDEN)]
+    ours = [at for at, frame in enumerate(frames, 1) if frame.filename.startswith(HIDDEN)]
     after = frames[max(ours, default=0) :] or frames
-    own = [each for each in after if not each.filename.startswith((HIDDEN, "<frozen"))]
+    own = [summary for summary in after if not summary.filename.startswith((HIDDEN, "<frozen"))]
     lines = [one_line(error)]
-    lines += [f"  in {each.filename}:{each.lineno}, {each.name}: {each.line}" for each in own]
+    lines += [
+        f"  in {summary.filename}:{summary.lineno}, {summary.name}: {summary.line}"
+        for summary in own
+    ]
     if error.__cause__ is not None:
         lines.append(f"  caused by {one_line(error.__cause__)}")
     return "\n".join(lines)
@@ -314,8 +317,8 @@ def main_function(module: Mapping[str, Any], machine: Machine) -> Callable[..., 
     for variable in machine.variables:
         if variable.name == "function_name" and isinstance(variable.value.data, str):
             name = variable.value.data
-    for each in (name, name.lower()):
-        if callable(found := module.get(each)):
+    for text in (name, name.lower()):
+        if callable(found := module.get(text)):
             return found  # type: ignore[no-any-return]
     raise NameError(f"the base of the program defines no function `{name}`")
 

@@ -100,9 +100,9 @@ def as_literal(value: object) -> str:
 
 def _data(value: object) -> Data:
     if isinstance(value, Mapping):
-        return Struct(entries=tuple((str(key), _data(each)) for key, each in value.items()))
+        return Struct(entries=tuple((str(key), _data(item)) for key, item in value.items()))
     if isinstance(value, list | tuple):
-        return tuple(_data(each) for each in value)
+        return tuple(_data(item) for item in value)
     if isinstance(value, CodeText) or (isinstance(value, str) and is_not_string(value)):
         from smachac.diagnostics.source import NOWHERE
 
@@ -214,7 +214,7 @@ def written(variables: Iterable[Variable]) -> dict[str, object]:
     found = {variable.name: plain(variable.value.data) for variable in variables}
     callbacks = found.get("callbacks")
     if isinstance(callbacks, dict):
-        found["callbacks"] = {key: _function(each) for key, each in callbacks.items()}
+        found["callbacks"] = {key: _function(callback) for key, callback in callbacks.items()}
     return found
 
 

@@ -327,7 +327,7 @@ def _called(node: Container, parent: EmittedContainer, path: str, module: Module
         text = _function(name, [*node_parameter, *arguments], inside, function, module)
         module.functions[function.key] = PrintedFunction(name=name, text=text)
     name, depth = module.functions[function.key].name, parent.depth + 1
-    given = [("", each) for each in node_parameter]
+    given = [("", text) for text in node_parameter]
     made = call(
         name, [*given, *((f"{parameter}=", value) for parameter, value in arguments.items())]
     )
@@ -397,7 +397,7 @@ def _required_defaults(leaf: Leaf, type_: StateType) -> structure.Arguments:
     facts = type_.class_facts
     known = facts.parameters if facts is not None and not type_.built_in else None
     set_ = {one.name for one in leaf.variables}
-    required = [each.word.text for each in known or () if each.required]
+    required = [parameter.word.text for parameter in known or () if parameter.required]
     defaults = {name: type_.variables[name].default for name in required if name in type_.variables}
     return [
         (f"{name}=", literal(default.data))
@@ -483,8 +483,8 @@ def _unprinted_variable(found: Diagnostic, leaf: Leaf, type_: StateType) -> Diag
     not use: it is probably meant."""
     match found.finding.arguments:
         case ("undefined", name):
-            used, own = type_.used, [each.name for each in leaf.variables]
-            idle = [each for each in own if used is not None and each not in used]
+            used, own = type_.used, [variable.name for variable in leaf.variables]
+            idle = [text for text in own if used is not None and text not in used]
             if len(idle) == 1 and guesser(own).sure(name) is None:
                 help = f"did you mean `{idle[0]}`? `{leaf.name}` sets it, and the template does not"
                 help += " use it"
@@ -498,12 +498,12 @@ def _own_name(class_name: str, type_: str, module: ModuleParts) -> str:
     taken = {*module.classes.values()}
     taken |= {
         _class_name(name)
-        for name, each in module.state_types.items()
-        if name != type_ and ":" not in each.code.get("python", "")
+        for name, other in module.state_types.items()
+        if name != type_ and ":" not in other.code.get("python", "")
     }
     candidates = (f"{class_name}_{number}" for number in count(2))
     return next(
-        each for each in chain([class_name, _class_name(type_)], candidates) if each not in taken
+        text for text in chain([class_name, _class_name(type_)], candidates) if text not in taken
     )
 
 

@@ -64,7 +64,7 @@ def variable_names() -> Callable[[str, str], str]:
 
     def fresh(name: str, prefix: str) -> str:
         word = unicodedata.normalize("NFKC", name.lower())
-        word = "".join(each if f"_{each}".isidentifier() else " " for each in word)
+        word = "".join(text if f"_{text}".isidentifier() else " " for text in word)
         word = re.sub(r"\W+", "_", word).strip("_")
         if prefix or not word or word[0].isdigit() or iskeyword(word) or word in taken:
             word = f"{prefix or 'sm_'}{word}".rstrip("_")

@@ -52,7 +52,7 @@ def element(
     tag: str, *content: Element | Comment | Code | str | None, **attributes: str | None
 ) -> Element:
     """An element; content that is None is left out."""
-    return Element(tag, attributes, tuple(each for each in content if each is not None))
+    return Element(tag, attributes, tuple(value for value in content if value is not None))
 
 
 def script(code: str) -> Element:
@@ -97,7 +97,7 @@ def lines_of(root: Element) -> Iterator[str]:
             case _:
                 yield f"{indent}<{node.tag}{given}>"
                 stack.append((depth, f"</{node.tag}>"))
-                stack.extend((depth + 1, each) for each in reversed(node.content))
+                stack.extend((depth + 1, value) for value in reversed(node.content))
 
 
 def _comment(text: str) -> str:

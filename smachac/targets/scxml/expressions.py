@@ -226,7 +226,9 @@ def _is_whole(type_: Type) -> bool:
 
 
 def _call(name: str, *arguments: Js | str, type: Type = ANY) -> Js:
-    given = ", ".join(each if isinstance(each, str) else each.at(_ARROW) for each in arguments)
+    given = ", ".join(
+        argument if isinstance(argument, str) else argument.at(_ARROW) for argument in arguments
+    )
     return Js(text=f"{name}({given})", type=type)
 
 
@@ -359,7 +361,7 @@ class _Printer:
             return self.print(ListDisplay(expr.items))
         if isinstance(expr, Call) and dotted(expr.function) == "range":
             given = [self.print(argument) for argument in expr.arguments]
-            if not expr.keywords and not any(_name(each.type) == "float" for each in given):
+            if not expr.keywords and not any(_name(js.type) == "float" for js in given):
                 return _call("range", *given, type=self.type(expr))
         return self.print(expr)
 
@@ -380,7 +382,7 @@ class _Printer:
         name = dotted(expr.function)
         if name is None or name not in FUNCTIONS or name in self.bound:
             raise _unsupported(expr, "the function is not one of the portable ones")
-        given = [self._items(each) for each in expr.arguments]
+        given = [self._items(argument) for argument in expr.arguments]
         item = item_of(given[0].type) if len(given) == 1 else ANY
         named = {key: self._argument(value, item) for key, value in expr.keywords}
         floats = len(given) == 1 and _name(given[0].type) == "float"
@@ -478,7 +480,7 @@ def _literal(value: Js) -> Type:
 
 
 def _plain_numbers(left: Js, right: Js) -> bool:
-    return all(plain(each.type).name in ("int", "float") for each in (left, right))
+    return all(plain(js.type).name in ("int", "float") for js in (left, right))
 
 
 # Functions. A function raises ValueError for arguments that it does not support.
@@ -539,7 +541,7 @@ def _extreme(*more: str) -> Callable[[Sequence[Js], Named], Js]:
 
 
 def _listed(given: Sequence[Js]) -> Js:
-    return Js(text=f"[{', '.join(each.at(_ARROW) for each in given)}]")
+    return Js(text=f"[{', '.join(js.at(_ARROW) for js in given)}]")
 
 
 def _sorted(given: Sequence[Js], named: Named) -> Js:

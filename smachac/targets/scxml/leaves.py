@@ -81,7 +81,7 @@ class _Leaf:
         if not self.node.open:
             return own
         edges = (edge.outcome for edge in self.node.transitions)
-        return tuple(dict.fromkeys([*own, *(each for each in edges if each != self.node.catches)]))
+        return tuple(dict.fromkeys([*own, *(edge for edge in edges if edge != self.node.catches)]))
 
     def outer(self, key: str) -> str:
         return key if self.in_iterator else remapping(self.node)[key]
@@ -90,7 +90,7 @@ class _Leaf:
         return js_member(self.scope.data, self.outer(key))
 
     def writes(self, key: str) -> bool:
-        return self.in_iterator or any(each.name == key for each in self.node.outputs)
+        return self.in_iterator or any(output.name == key for output in self.node.outputs)
 
     def reads(self) -> Reads:
         """What functions of the leaf read."""
@@ -211,7 +211,7 @@ def _conditional(leaf: _Leaf) -> Element:
         event = choice(lambda name: f"{leaf.id}.{name}")
     begin, after = leaf.computed(*content, element("send", target="#_internal", eventexpr=event))
     exits = [
-        each for name in dict.fromkeys(names) for each in leaf.exits(name, f"{leaf.id}.{name}")
+        exit_ for name in dict.fromkeys(names) for exit_ in leaf.exits(name, f"{leaf.id}.{name}")
     ]
     return element("state", begin, *exits, *(after if tests else ()))
 
@@ -277,7 +277,7 @@ def _invoked(leaf: _Leaf) -> Element:
     )
     calls = leaf.calls()
     begin, after = leaf.computed(*calls) if calls else (onentry(entry(leaf.plan, leaf.path)), [])
-    exits = [each for name in leaf.outcomes for each in leaf.exits(name, f"{id}.{name}")]
+    exits = [exit_ for name in leaf.outcomes for exit_ in leaf.exits(name, f"{id}.{name}")]
     told = element("send", target=f"#_{id}", event="stop")
     return element(
         "state",

@@ -133,13 +133,13 @@ def _in_region(plan: Plan, path: str, inner: Element) -> Content:
 
 def _inside(plan: Plan, path: str, node: Container) -> Content:
     """The states in a container."""
-    return [each for one in node.children for each in state(plan, f"{path}/{one.name}", one)]
+    return [item for one in node.children for item in state(plan, f"{path}/{one.name}", one)]
 
 
 def _machine(plan: Plan, path: str, node: StateMachine | nodes.Sequence) -> Element:
     initial = f"{path}/{node.initial or node.children[0].name}"
     inside = [
-        each for child in node.children for each in state(plan, f"{path}/{child.name}", child)
+        item for child in node.children for item in state(plan, f"{path}/{child.name}", child)
     ]
     leave: Content = [script(f"leave({js_string(plan.ids[path])});")]
     return element(
@@ -189,7 +189,7 @@ def _concurrence(plan: Plan, path: str, node: Concurrence) -> Element:
     id, children = plan.ids[path], {f"{path}/{child.name}": child for child in node.children}
     names = ", ".join(js_string(plan.ids[child]) for child in children)
     start = script(f"start({js_string(id)}, [{names}]);")
-    regions = [each for where, child in children.items() for each in state(plan, where, child)]
+    regions = [item for where, child in children.items() for item in state(plan, where, child)]
     ends = [_end(plan, path, node, where, child) for where, child in children.items()]
     return element(
         "parallel",
@@ -223,9 +223,9 @@ def _joined(plan: Plan, path: str, node: Concurrence) -> Iterator[Element]:
     failed = [f"In({js_string(final)})" for child in node.children
               if (final := plan.failed(f"{path}/{child.name}"))]  # fmt: skip
     if failed:
-        for each in faults(plan, path, node, event, guard=" || ".join(failed)):
-            assert isinstance(each, Element)
-            yield Element(each.tag, each.attributes, (join, *each.content))
+        for fault in faults(plan, path, node, event, guard=" || ".join(failed)):
+            assert isinstance(fault, Element)
+            yield Element(fault.tag, fault.attributes, (join, *fault.content))
     if node.sugar:
         served = script(f"delete {requested(id)};")
         yield from _outcome(plan, path, node, PREEMPTED, requested(id), [join, served])
@@ -315,12 +315,12 @@ def root(plan: Plan) -> list[Element | Comment]:
     scope = plan.scopes[path]
     initial = f"{path}/{node.initial or node.children[0].name}"
     inside = [
-        each for child in node.children for each in state(plan, f"{path}/{child.name}", child)
+        item for child in node.children for item in state(plan, f"{path}/{child.name}", child)
     ]
     finals = [_root_final(plan, outcome, id) for outcome, id in plan.finals(path).items()]
     if failed := plan.failed(path):
         finals.append(element("final", id=failed))
-    stores = [f"{each.data} = userdata({each.data});" for each in plan.scopes.values()]
+    stores = [f"{scope.data} = userdata({scope.data});" for scope in plan.scopes.values()]
     take = f"Object.assign({scope.data}, inputs);"
     stop = f"if (preempted) request({js_string(scope.id)});"
     told = element("assign", location="stopped", expr=f"request({js_string(scope.id)})")

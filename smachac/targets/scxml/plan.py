@@ -152,7 +152,7 @@ name."""
 
 
 def present(*found: Element | Comment | None) -> Content:
-    return [each for each in found if each is not None]
+    return [item for item in found if item is not None]
 
 
 def ways(plan: Plan, path: str, outcome: str) -> list[Way]:
@@ -242,8 +242,8 @@ def faults(
 def transition(
     event: str | None, way: Way, *content: Element | Comment, guard: str = ""
 ) -> Element:
-    guards = [each for each in (guard, way.guard) if each]
-    several = [f"({each})" if "||" in each else each for each in guards]
+    guards = [text for text in (guard, way.guard) if text]
+    several = [f"({guard})" if "||" in guard else guard for guard in guards]
     cond = " && ".join(several if len(guards) > 1 else guards)
     return element("transition", *content, event=event, cond=cond or None, target=way.target)
 

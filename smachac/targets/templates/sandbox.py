@@ -144,11 +144,11 @@ class Meter:
         level: list[Any] = [value]
         while level and levels < DEEPEST:
             inner: list[Any] = []
-            for each in level:
-                if isinstance(each, dict):
-                    inner.extend(each.values())
-                elif isinstance(each, list | tuple):
-                    inner.extend(each)
+            for other in level:
+                if isinstance(other, dict):
+                    inner.extend(other.values())
+                elif isinstance(other, list | tuple):
+                    inner.extend(other)
             levels, level = levels + 1, inner
         return size * levels
 
@@ -196,15 +196,15 @@ class BoundedEnvironment(SandboxedEnvironment):
             for name, function in FILTERS.items()
             if name not in DROPPED_FILTERS
         }
-        self.tests = {name: self._metered_test(each) for name, each in TESTS.items()}
+        self.tests = {name: self._metered_test(test) for name, test in TESTS.items()}
 
     def add_filters(self, filters: Mapping[str, Callable[..., Any]]) -> None:
         """Adds filters, metered like those of Jinja."""
-        self.filters |= {name: self._metered(name, each) for name, each in filters.items()}
+        self.filters |= {name: self._metered(name, filter_) for name, filter_ in filters.items()}
 
     def add_tests(self, tests: Mapping[str, Callable[..., Any]]) -> None:
         """Adds tests, metered like those of Jinja."""
-        self.tests |= {name: self._metered_test(each) for name, each in tests.items()}
+        self.tests |= {name: self._metered_test(test) for name, test in tests.items()}
 
     def _parse(self, source: str, name: str | None, filename: str | None) -> nodes.Template:
         tree = super()._parse(source, name, filename)

@@ -14,7 +14,7 @@ def package_files(machine: Machine, name: str, modules: Files, program: str) -> 
     the SMACH program."""
     mark = made_by(machine)
     needed = ["yasmin", "rclpy", *message_packages(program)]
-    depends = "".join(f"  <exec_depend>{each}</exec_depend>\n" for each in needed)
+    depends = "".join(f"  <exec_depend>{text}</exec_depend>\n" for text in needed)
     return {
         **{f"{name}/{file}": text for file, text in modules.items()},
         f"{name}/__init__.py": f"# {mark}\n",

@@ -119,7 +119,7 @@ def _container(
             state = variables[where]
         yield from _added(node, variable, child, state, states).split("\n")
     if isinstance(node, StateMachine | nodes.Sequence) and node.initial:
-        first = next(each.name for each in node.children if each.name in reached[path])
+        first = next(child.name for child in node.children if child.name in reached[path])
         if node.initial != first:
             yield f"{variable}.set_start_state({string(_state_name(node, node.initial))})"
 

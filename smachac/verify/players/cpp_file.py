@@ -65,8 +65,10 @@ def file_player(
         full = {shown: path for path, shown in planned.paths.items()}
         with tempfile.TemporaryDirectory() as folder:
             header.write_stand_ins(Path(folder))
-            found = [each for home in folders for each in (home, home / "include")]
-            flags = [f"-I{each}" for each in (folder, *dict.fromkeys(map(Path.resolve, found)))]
+            found = [path for home in folders for path in (home, home / "include")]
+            flags = [
+                f"-I{fromkey}" for fromkey in (folder, *dict.fromkeys(map(Path.resolve, found)))
+            ]
             try:
                 for events in traces(header.program(), header.script(), compiler, *flags):
                     yield [_with_line(with_shown_paths(event, full), lines) for event in events]
@@ -233,12 +235,12 @@ class _Header:
         ]
         declared = [
             "template <class Outcome, class In, class Out, class Stop>"
-            f" Outcome leaf_{each.leaf.number}(In &in, Out &out, Stop &stop);"
-            for each in self._stand_ins.values()
+            f" Outcome leaf_{in_.leaf.number}(In &in, Out &out, Stop &stop);"
+            for in_ in self._stand_ins.values()
         ]
         name = scope_name(self._machine.root.name)
         reads = {path: keys for case in self._cases for path, keys in case.reads.items()}
-        leaves = [line for each in self._stand_ins.values() for line in _leaf(each, reads)]
+        leaves = [line for in_ in self._stand_ins.values() for line in _leaf(in_, reads)]
         return "\n".join([
             *play,
             "namespace verify {", *declared, "}",
@@ -256,7 +258,7 @@ class _Header:
 
     def _text(self) -> str:
         """The header with a call at the beginning of each `execute` of a state."""
-        own = {each.struct: each for each in self._stand_ins.values() if each.code is None}
+        own = {in_.struct: in_ for in_ in self._stand_ins.values() if in_.code is None}
         calls: dict[int, str] = {}
         for name, scope in self._found.items():
             calls |= {at: f" ::verify::starts({run});" for at, run in scope.starts}
@@ -270,13 +272,13 @@ class _Header:
 
     def _assertions(self) -> Iterator[str]:
         """The assertions that each state is of the type that is replaced."""
-        for path, each in self._stand_ins.items():
-            name = identifier(each.leaf.leaf.name)
-            type_ = f"::{each.struct}" if each.code is None else each.code.name
+        for path, in_ in self._stand_ins.items():
+            name = identifier(in_.leaf.leaf.name)
+            type_ = f"::{in_.struct}" if in_.code is None else in_.code.name
             message = f"the state {path} is not of the type {type_.removeprefix('::')}"
             yield f"#line {self.lines.get(path, 1)} {cpp_literal(self._source.name)}"
             yield (
-                f"static_assert(std::is_same_v<decltype(::{each.space}::States::{name}), {type_}>,"
+                f"static_assert(std::is_same_v<decltype(::{in_.space}::States::{name}), {type_}>,"
                 f" {cpp_literal(message)});"
             )
         yield '#line 1 "verify.cpp"'
@@ -284,8 +286,8 @@ class _Header:
     def _here(self) -> Iterator[str]:
         yield "std::size_t here() {"
         yield "  static const std::map<std::string_view, std::size_t> numbers{"
-        for path, each in self._stand_ins.items():
-            yield f"    {{{cpp_literal(path)}, {each.leaf.number}}},"
+        for path, in_ in self._stand_ins.items():
+            yield f"    {{{cpp_literal(path)}, {in_.leaf.number}}},"
         yield "  };"
         yield "  const auto found = numbers.find(current.full());"
         yield "  return found == numbers.end() ? 0 : found->second;"
@@ -310,10 +312,10 @@ class _Header:
     def write_stand_ins(self, folder: Path) -> None:
         """Write the headers with stand-ins for the classes of the user."""
         headers: dict[str, dict[str, list[_StandIn]]] = {}
-        for each in self._stand_ins.values():
-            if each.code is not None:
-                classes = headers.setdefault(each.code.header, {})
-                classes.setdefault(each.code.name, []).append(each)
+        for in_ in self._stand_ins.values():
+            if in_.code is not None:
+                classes = headers.setdefault(in_.code.header, {})
+                classes.setdefault(in_.code.name, []).append(in_)
         for header, classes in headers.items():
             name = PurePosixPath(header)
             if name.is_absolute() or ".." in name.parts:
@@ -391,7 +393,7 @@ def _class(stand_ins: Sequence[_StandIn]) -> Iterator[str]:
     yield from [f"namespace {space} {{"] if space else []
     yield f"class {name} {{"
     yield "public:"
-    yield from enumeration(tuple(each.name for each in type_.outcomes))
+    yield from enumeration(tuple(outcome.name for outcome in type_.outcomes))
     yield f"  struct In {{ {' '.join(ins)} }};"
     yield f"  struct Out {{ {' '.join(outs)} }};"
     yield f"  static constexpr std::uint32_t smachac_interface = {interface_hash(type_)};"
@@ -399,8 +401,8 @@ def _class(stand_ins: Sequence[_StandIn]) -> Iterator[str]:
     yield f"  template <class One, class... More> explicit {name}(One &&, More &&...) {{}}"
     yield f"  Outcome execute({', '.join(parameters)}) {{"
     yield "    switch (verify::here()) {"
-    for each in stand_ins:
-        number = each.leaf.number
+    for in_ in stand_ins:
+        number = in_.leaf.number
         yield f"    case {number}: return verify::leaf_{number}<Outcome>({given});"
     yield '    default: throw std::runtime_error("is not in the script");'
     yield "    }"
@@ -480,4 +482,4 @@ def _userdata(path: str, scopes: Mapping[str, ContainerScope]) -> str:
     """The userdata of a container, inside the userdata of the machine."""
     names = path.split("/")
     inner = ["/".join(names[: depth + 1]) for depth in range(1, len(names))]
-    return ".".join(["(*given)", *(member(scopes[each].node) for each in inner)])
+    return ".".join(["(*given)", *(member(scopes[text].node) for text in inner)])

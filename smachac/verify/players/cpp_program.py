@@ -259,7 +259,7 @@ class CppLeaf:
         able = PREEMPTED in own_outcomes(self.leaf)
         for number, row in enumerate(self.rows):
             yield f"  case {number}:"
-            waits, asks = (str(each).lower() for each in (row.wait, row.stop))
+            waits, asks = (str(flag).lower() for flag in (row.wait, row.stop))
             yield f"    if (preempted(stop, {waits}, {asks}) && {str(able).lower()}) {{"
             yield "      service(stop);"
             outcome = PREEMPTED if able else row.outcome

@@ -202,7 +202,7 @@ class _StepLeaf(CppLeaf):
         able = PREEMPTED in own_outcomes(self.leaf)
         for number, row in enumerate(self.rows):
             yield f"  case {number}:"
-            waiting, asks = (str(each).lower() for each in (row.wait, row.stop))
+            waiting, asks = (str(flag).lower() for flag in (row.wait, row.stop))
             yield f"    if (waits(context, {waiting}, {asks})) {{ return smachac::step::running; }}"
             yield f"    if (context.stop_requested() && {str(able).lower()}) {{"
             yield "      context.service();"

@@ -130,7 +130,9 @@ def _replaced(names: Sequence[str], replacement: Callable[[Any], Any]) -> Iterat
     changed = [
         (kind, name, vars(kind)[name])
         for smach in _smachs()
-        for kind in dict.fromkeys(each for each in vars(smach).values() if isinstance(each, type))
+        for kind in dict.fromkeys(
+            type_ for type_ in vars(smach).values() if isinstance(type_, type)
+        )
         for name in names
         if name in vars(kind) and is_container(kind)
     ]

@@ -76,7 +76,7 @@ def ros_stand_ins(text: str, machine: Machine) -> Iterator[None]:
     finally:
         sys.meta_path.remove(first)
         sys.meta_path.remove(last)
-        for name in [name for name, each in sys.modules.items() if isinstance(each, _Module)]:
+        for name in [name for name, module in sys.modules.items() if isinstance(module, _Module)]:
             del sys.modules[name]
         runtime = import_module("smachac.runtime")
         for name in ("smach_ros", "smach_ros2"):
@@ -89,16 +89,17 @@ def ros_stand_ins(text: str, machine: Machine) -> Iterator[None]:
 def built(build: Callable[..., Any]) -> Any:
     """The machine that a function `build` returns; a parameter without a default is the node."""
     required = [
-        each
-        for each in inspect.signature(build).parameters.values()
-        if each.default is each.empty and each.kind is each.POSITIONAL_OR_KEYWORD
+        parameter
+        for parameter in inspect.signature(build).parameters.values()
+        if parameter.default is parameter.empty
+        and parameter.kind is parameter.POSITIONAL_OR_KEYWORD
     ]
     return build(*(StandIn() for _ in required))
 
 
 def _taken_out(names: Sequence[str]) -> dict[str, ModuleType]:
     """Remove modules, and those below them, from the imported ones; the removed ones."""
-    found = {name: each for name, each in sys.modules.items() if _is_below(name, names)}
+    found = {name: module for name, module in sys.modules.items() if _is_below(name, names)}
     for name in found:
         del sys.modules[name]
     runtime = import_module("smachac.runtime")
@@ -108,7 +109,7 @@ def _taken_out(names: Sequence[str]) -> dict[str, ModuleType]:
 
 
 def _is_below(name: str, names: Sequence[str]) -> bool:
-    return any(name == each or name.startswith(f"{each}.") for each in names)
+    return any(name == text or name.startswith(f"{text}.") for text in names)
 
 
 class _Module(ModuleType):
@@ -172,7 +173,7 @@ def _state_class(type_: StateType) -> type:
             for names, slots in ((inputs, READ_SLOTS), (outputs, WRITTEN_SLOTS)):
                 names += [name for slot in slots for name in given.get(slot) or ()]
             super().__init__(
-                list(outcomes) or [each.name for each in type_.outcomes], inputs, outputs
+                list(outcomes) or [outcome.name for outcome in type_.outcomes], inputs, outputs
             )
 
     return StandInState
