@@ -68,15 +68,15 @@ class Types:
     every: Sequence[Cell] = field(repr=False)
     readers: Readers = field(repr=False)
 
-    @cached_property
+    @property
     def keys(self) -> Mapping[tuple[str, str], Type]:
         return self._by_role["scope"]
 
-    @cached_property
+    @property
     def inputs(self) -> Mapping[tuple[str, str], Type]:
         return self._by_role["input"]
 
-    @cached_property
+    @property
     def outputs(self) -> Mapping[tuple[str, str], Type]:
         return self._by_role["output"]
 
