@@ -85,10 +85,10 @@ def _merged(below: list[Item], own: list[Item]) -> list[Item]:
         if _is_mapping(item) and _is_mapping(above):
             assert isinstance(item.value, Collection)
             assert isinstance(above.value, Collection)
-            entries = {_key(item): item for item in above.value.items}
+            entries = {_key(entry): entry for entry in above.value.items}
             mine = [
-                _with_comments(entries.pop(_key(other)), other) if _key(other) in entries else other
-                for other in item.value.items
+                _with_comments(entries.pop(_key(entry)), entry) if _key(entry) in entries else entry
+                for entry in item.value.items
             ]
             flow = item.value.flow and above.value.flow
             whole = Collection(True, flow, -1, items=[*mine, *entries.values()])
