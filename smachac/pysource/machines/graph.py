@@ -398,18 +398,18 @@ class _Builder:
     ) -> Leaf:
         """A state of an unknown type: its outcomes are those of a comment, or of its
         transitions."""
-        told = self.reader.comments.at(span)
-        if told.outcomes is None:
+        comment = self.reader.comments.at(span)
+        if comment.outcomes is None:
             self.unknown.append((span, reason))
             outcomes = tuple(Outcome(name=text, span=span) for text in _outcomes_of(added))
         else:
-            outcomes = tuple(Outcome(name=word.text, span=word.span) for word in told.outcomes)
+            outcomes = tuple(Outcome(name=word.text, span=word.span) for word in comment.outcomes)
         type_ = facts.name.text if facts is not None and facts.name is not None else ELSEWHERE
         return Leaf(
             name=name, type=type_, outcomes=outcomes, span=span, class_facts=facts,
-            open=told.input_keys is None and told.output_keys is None,
-            inputs=tuple(Key(name=word.text, span=word.span) for word in told.input_keys or ()),
-            outputs=tuple(Key(name=word.text, span=word.span) for word in told.output_keys or ()),
+            open=comment.input_keys is None and comment.output_keys is None,
+            inputs=tuple(Key(name=word.text, span=word.span) for word in comment.input_keys or ()),
+            outputs=tuple(Key(name=word.text, span=word.span) for word in comment.output_keys or ()),
         )  # fmt: skip
 
     def _type(

@@ -138,11 +138,11 @@ def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope, number: int =
             ),
         )
     if outs:
-        told = [
+        outputs = [
             f"smachac::Output{{{cpp_literal(key.name)}, {out}{hidden(key)}}}"
             for key, out in zip(type_.output_keys, outs, strict=True)
         ]
-        call = f"run.wrote({call}, {', '.join(told)})"
+        call = f"run.wrote({call}, {', '.join(outputs)})"
     return LeafCode(
         type=code.name,
         call=call,
@@ -262,7 +262,7 @@ def field_type(part: str, type_: Type) -> str:
 
 def interface_hash(type_: StateType) -> str:
     """A hash of all parts of an interface that its class depends on."""
-    told = [
+    parts = [
         type_.name,
         *(f"var {name} {plain(variable.type)}" for name, variable in type_.variables.items()),
         *(f"in {key.name} {plain(key.type)}" for key in type_.input_keys),
@@ -270,7 +270,7 @@ def interface_hash(type_: StateType) -> str:
         *(f"outcome {outcome.name}" for outcome in type_.outcomes),
         f"stop {stops(type_)}",
     ]
-    return f"0x{zlib.crc32(chr(10).join(told).encode()):08x}U"
+    return f"0x{zlib.crc32(chr(10).join(parts).encode()):08x}U"
 
 
 def step_fields(part: str, keys: Iterable[Key], bounds: Bounds) -> dict[str, str]:

@@ -199,8 +199,8 @@ def _conditional(leaf: _Leaf) -> Element:
     names = [*(outcome for outcome, _ in tests), otherwise]
 
     def choice(word: Callable[[str], str]) -> str:
-        asked = [f"{test} ? {js_string(word(outcome))} : " for outcome, test in tests]
-        return f"{''.join(asked)}{js_string(word(otherwise))}"
+        choices = [f"{test} ? {js_string(word(outcome))} : " for outcome, test in tests]
+        return f"{''.join(choices)}{js_string(word(otherwise))}"
 
     content: list[Element] = []
     if any(key.name == "outcome" for key in leaf.node.outputs):
@@ -278,7 +278,7 @@ def _invoked(leaf: _Leaf) -> Element:
     calls = leaf.calls()
     begin, after = leaf.computed(*calls) if calls else (onentry(entry(leaf.plan, leaf.path)), [])
     exits = [exit_ for name in leaf.outcomes for exit_ in leaf.exits(name, f"{id}.{name}")]
-    told = element("send", target=f"#_{id}", event="stop")
+    request = element("send", target=f"#_{id}", event="stop")
     return element(
         "state",
         begin,
@@ -286,7 +286,7 @@ def _invoked(leaf: _Leaf) -> Element:
         *exits,
         *after,
         *faults(leaf.plan, leaf.path, node, f"fault.{id}", message="_event.data.message"),
-        element("transition", told, event=f"stop.{id}"),
+        element("transition", request, event=f"stop.{id}"),
     )
 
 

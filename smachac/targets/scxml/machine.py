@@ -323,11 +323,11 @@ def root(plan: Plan) -> list[Element | Comment]:
     stores = [f"{scope.data} = userdata({scope.data});" for scope in plan.scopes.values()]
     take = f"Object.assign({scope.data}, inputs);"
     stop = f"if (preempted) request({js_string(scope.id)});"
-    told = element("assign", location="stopped", expr=f"request({js_string(scope.id)})")
+    assignment = element("assign", location="stopped", expr=f"request({js_string(scope.id)})")
     machine = element(
         "state",
         element("onentry", script(" ".join([*stores, take, stop])), *entry(plan, path)),
-        element("transition", told, *STOPS, event="preempt"),
+        element("transition", assignment, *STOPS, event="preempt"),
         *inside,
         id=scope.id,
         initial=plan.ids[initial],
