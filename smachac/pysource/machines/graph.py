@@ -396,20 +396,20 @@ class _Builder:
     def open_leaf(
         self, name: str, span: Span, added: Added, reason: str, facts: ClassFacts | None = None
     ) -> Leaf:
-        """A state of an unknown type: its outcomes are those of a comment, or of its
+        """A state of an unknown type: its outcomes are those of a note, or of its
         transitions."""
-        comment = self.reader.comments.at(span)
-        if comment.outcomes is None:
+        note = self.reader.comments.at(span)
+        if note.outcomes is None:
             self.unknown.append((span, reason))
             outcomes = tuple(Outcome(name=text, span=span) for text in _outcomes_of(added))
         else:
-            outcomes = tuple(Outcome(name=word.text, span=word.span) for word in comment.outcomes)
+            outcomes = tuple(Outcome(name=word.text, span=word.span) for word in note.outcomes)
         type_ = facts.name.text if facts is not None and facts.name is not None else ELSEWHERE
         return Leaf(
             name=name, type=type_, outcomes=outcomes, span=span, class_facts=facts,
-            open=comment.input_keys is None and comment.output_keys is None,
-            inputs=tuple(Key(name=word.text, span=word.span) for word in comment.input_keys or ()),
-            outputs=tuple(Key(name=word.text, span=word.span) for word in comment.output_keys or ()),
+            open=note.input_keys is None and note.output_keys is None,
+            inputs=tuple(Key(name=word.text, span=word.span) for word in note.input_keys or ()),
+            outputs=tuple(Key(name=word.text, span=word.span) for word in note.output_keys or ()),
         )  # fmt: skip
 
     def _type(
