@@ -396,7 +396,7 @@ class _Builder:
     def open_leaf(
         self, name: str, span: Span, added: Added, reason: str, facts: ClassFacts | None = None
     ) -> Leaf:
-        """A state of an unknown type: its outcomes are those of a note, or of its
+        """A state of an unknown type: its outcomes are those of a comment, or of its
         transitions."""
         note = self.reader.comments.at(span)
         if note.outcomes is None:
