@@ -105,7 +105,9 @@ def _part(case: Json, name: str, typed: bool, bounds: Bounds | None) -> Part | l
         f"{asked}, [](auto &host, const auto &ud) {{\n{told}\n  }});"
         if bounds
         else f'  vectors::play<{name}::States, {name}::Userdata>("{name}", {case.get("runs", 1)}, '
-        f"{asked}, {name}::run, [](auto &host, const auto &ud) {{\n{told}\n  }});"
+        f"{asked}, [](auto &&...given) {{ return {name}::run("
+        "std::forward<decltype(given)>(given)...); }, "
+        f"[](auto &host, const auto &ud) {{\n{told}\n  }});"
     )
     (text,) = texts.values()
     header = "\n".join(line for line in text.splitlines() if not line.startswith("#"))

@@ -40,9 +40,14 @@ def test_checks_without_a_warning(name: str, capsys: pytest.CaptureFixture[str])
     assert main(["check", *strict, script(name)]) == 0, capsys.readouterr().out
 
 
+OUTCOMES = {"14_delivery_round": "done"}
+"""The outcomes of success that have another name than `succeeded`."""
+
+
 @pytest.mark.parametrize("name", every(2, EXAMPLES))
 def test_runs(name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", script(name), "--expect", "succeeded"]) == 0, capsys.readouterr().err
+    expected = OUTCOMES.get(name, "succeeded")
+    assert main(["run", script(name), "--expect", expected]) == 0, capsys.readouterr().err
 
 
 @pytest.mark.parametrize("name", every(2, sorted(set(EXAMPLES) - ON_THE_ARM)))
@@ -56,7 +61,7 @@ def test_the_file_runs_alone_with_warnings_as_errors(name: str, built: Path) -> 
         check=False,
     )
     assert ended.returncode == 0, ended.stderr
-    assert ended.stdout.rstrip().endswith("outcome: succeeded")
+    assert ended.stdout.rstrip().endswith(f"outcome: {OUTCOMES.get(name, 'succeeded')}")
 
 
 @pytest.mark.parametrize("tool", [["check"], ["format", "--check"]], ids=lambda tool: tool[0])

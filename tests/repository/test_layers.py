@@ -32,7 +32,16 @@ LAYERS = (
 
 PACKAGES: Mapping[str, frozenset[str]] = {
     "runtime": frozenset(
-        {"rospy", "rosgraph", "actionlib", "actionlib_msgs", "genpy", "smach_msgs", "yaml"}
+        {
+            "rospy",
+            "rosgraph",
+            "actionlib",
+            "actionlib_msgs",
+            "genpy",
+            "smach_msgs",
+            "yaml",
+            "yasmin",
+        }
     ),
     "robots": frozenset({"yaml", "xacro"}),
     "sim": frozenset({"pybullet", "pybullet_data", "numpy", "PIL", "imageio_ffmpeg"}),

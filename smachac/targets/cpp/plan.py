@@ -19,7 +19,7 @@ from smachac.ir.types import ANY, Bounds, Type
 from smachac.records import dataclass, field
 from smachac.targets import comment
 from smachac.targets.cpp.bounded import bounded, loose
-from smachac.targets.cpp.dialect import BLOCKING, STEPPED, Dialect
+from smachac.targets.cpp.dialect import BLOCKING, FAULT, STEPPED, Dialect
 from smachac.targets.cpp.expressions import Spelling
 from smachac.targets.cpp.identifiers import clashes, identifier, outermost
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, plain
@@ -61,13 +61,14 @@ class ContainerScope:
         return self.keys[name]
 
     def read(self, name: str, called: str) -> Spelling:
-        """How C++ reads a key that an expression calls `called`."""
+        """How C++ reads a key that an expression calls `called`; the text may have marks of the
+        dialect."""
         spelt, type_ = self.object(name), self.key(name)
         view = ".view()" if type_.name == "text" else ""
         if name in self.sure:
             return Spelling(text=f"{spelt}.unchecked(){view}", type=loose(type_))
         if self.dialect.stepped:
-            need = f"smachac::step::need(run.context, {spelt}, {cpp_literal(called)})"
+            need = f"smachac::step::need({FAULT}{spelt}, {cpp_literal(called)})"
             return Spelling(text=f"{need}{view}", type=loose(type_))
         return Spelling(text=f"smachac::need({spelt}, {cpp_literal(called)})", type=type_)
 

@@ -187,7 +187,7 @@ def _input(scope: ContainerScope, key: Key, outer: str) -> str:
         raise UnportableError(
             f"the input `{key.name}` is `{wanted}`, but the key `{outer}` is `{loose(given)}`"
         )
-    spelt = scope.read(outer, key.name).text
+    spelt = scope.dialect.resolved(scope.read(outer, key.name).text)
     if scope.dialect.stepped:
         return _bounded_input(scope, key, outer, spelt)
     if wanted.name == "optional" and outer not in scope.sure:
