@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import zip_longest
 from typing import Any
 
 from smachac.interpreter.behaviours import builtin_behaviour
@@ -126,11 +127,16 @@ OPAQUE = "(not JSON)"
 """Stands for a value without a JSON form."""
 
 
+def _is_error_of(event: Event | None, path: str) -> bool:
+    return event is not None and event["event"] == "error" and event["path"] == path
+
+
 def compare_traces(ours: list[Event], theirs: list[Event]) -> Difference | None:
     """The first difference of two traces.
 
     `preempt` events are ignored: it depends on the progress of a branch which states receive a
-    request. Keys that are OPAQUE in one trace are ignored in both.
+    request. Keys that are OPAQUE in one trace are ignored in both, and so is the end of a state
+    directly before its error, for an outcome that leads nowhere: stepped C++ has the error alone.
     """
     opaque = {
         (event["path"], event["key"])
@@ -140,9 +146,10 @@ def compare_traces(ours: list[Event], theirs: list[Event]) -> Difference | None:
     kept = [
         [
             event
-            for event in events
+            for event, after in zip_longest(events, events[1:])
             if event["event"] != "preempt"
             and not (event["event"] == "read" and (event["path"], event["key"]) in opaque)
+            and not (event["event"] == "exit" and _is_error_of(after, event["path"]))
         ]
         for events in (ours, theirs)
     ]
