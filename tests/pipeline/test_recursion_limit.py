@@ -54,7 +54,7 @@ def test_deep_machines_are_built(target: str) -> None:
     report: Report = []
     texts = build(analysis.checked, found, scripts, report).values()
     assert report == []
-    (text,) = (text for text in texts if "C997" in text)
+    text = next(text for text in texts if "C997" in text)
     if target == "python":
         compile(text, "x.py", "exec")
 
