@@ -52,7 +52,7 @@ test-ros2: ## Install ROS 2 with pip in .venv-ros2 and run the tests with live n
 test-browser: ## Install Chromium and what builds the viewer, and run the tests in the browser
 	@scripts/setup.sh dev
 	@scripts/setup.sh browser || test -z "$$SMACHAC_REQUIRE_ALL"
-	$(RUN) pytest -n 2 -m browser -rs $(ARGS)
+	$(RUN) pytest -n 2 -m "browser$(if $(SMACHAC_NIGHTLY),, and not nightly)" -rs $(ARGS)
 
 test-vscode: ## Install code-server, and try the VS Code extension in it; never part of the tests
 	@scripts/setup.sh dev
