@@ -111,8 +111,8 @@ def _packed(result: object, uses: frozenset[str], disk: Disk) -> bytes:
 
 
 def unpacked(data: bytes, disk: Disk) -> tuple[Any, frozenset[str]] | None:
-    """A result with its files. None if this process knows one of the files by another name or with
-    another text: then the result is not that of this process."""
+    """A result with the paths of its files. None if the disk of this process has another name or
+    another text for one of the files: the result is then not valid here."""
     stream = io.BytesIO(data)
     for path, (name, text) in pickle.load(stream).items():
         source = disk.read(Path(name), [])

@@ -76,5 +76,5 @@ def _is_made(node: Node) -> bool:
 
 
 def _is_unknown(node: Node) -> bool:
-    """Whether a state stands for what is not known."""
+    """Whether a state was added for a part of the machine that is not known."""
     return isinstance(node, Leaf) and node.synthetic and node.type == ELSEWHERE

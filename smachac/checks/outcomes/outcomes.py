@@ -238,8 +238,8 @@ def _unhandled_outcomes(path: str, container: Linear, lacking: Unhandled) -> Ite
 
 
 class _Steps(NamedTuple):
-    """The transitions in a container: `order` are the numbers of its states, `alike` by outcome its
-    targets with their numbers, `used` the names that are targets."""
+    """The transitions in a container. `order` has the number of each state, `alike` the targets of
+    each outcome in their order, `used` the names of all targets."""
 
     names: Sequence[str]
     order: Mapping[str, int]

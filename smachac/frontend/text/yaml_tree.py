@@ -543,7 +543,7 @@ class _Builder:
         return Map(self._entries(items, flow), span)
 
     def _meant(self, event: Any) -> tuple[Tree, int]:
-        """The node that an alias stands for, and the number of nodes in it."""
+        """The node with the anchor of an alias, and the number of nodes in it."""
         self._check_anchor(event)
         span = Span(self.source, event.start_mark.index, event.end_mark.index)
         known = self.anchors.get(event.anchor)
