@@ -75,7 +75,13 @@ def computed(cases: list[tuple[dict[str, object], str]]) -> list[Any]:
         encoding="utf-8",
     )
     assert found.returncode == 0, found.stderr[:2000]
-    return [json.loads(line) for line in found.stdout.splitlines()]
+    return [json.loads(line, parse_int=number_of) for line in found.stdout.splitlines()]
+
+
+def number_of(text: str) -> float:
+    """A number that JavaScript printed without a point: of an integer beyond 53 bits, a float."""
+    value = int(text)
+    return value if abs(value) <= LARGEST else float(value)
 
 
 def shown(value: object) -> object:

@@ -246,6 +246,12 @@ class _Printer:
         return replace(self._form(expr), type=type_)
 
     def type(self, expr: Expr) -> Type:
+        """The type of a part. `type_of` supposes that the test of a conditional excludes null,
+        which JavaScript would take for a number: one with a branch that can be null is `any`."""
+        if isinstance(expr, Conditional):
+            branches = (expr.then, expr.otherwise)
+            if any(self.type(branch).name in ("optional", "any") for branch in branches):
+                return ANY
         keys = mapping((key, type_) for key, (_, type_) in self.reads.keys.items())
         return type_of(expr, {**dict.fromkeys(self.parameters, keys), **self.bound})
 
