@@ -35,7 +35,12 @@ def package_files(
         f"{name}/{program}.py": text,
         f"{name}/__init__.py": f"# {mark}\n",
         "package.xml": package_xml(machine, name, depends, "ament_python"),
-        "setup.py": _setup(machine, name, program),
+        "setup.py": setup_file(
+            machine,
+            name,
+            f"{program}:run_node",
+            f'        ("share/{name}/launch", ["launch/{program}.launch.py"]),\n',
+        ),
         "setup.cfg": SETTINGS.format(mark=mark, name=name),
         f"resource/{name}": f"# {mark}\n",
         f"launch/{program}.launch.py": _launch(machine, name, program, parameters),
@@ -62,7 +67,9 @@ install_scripts=$base/lib/{name}
 """
 
 
-def _setup(machine: Machine, name: str, program: str) -> str:
+def setup_file(machine: Machine, name: str, start: str, more: str = "") -> str:
+    """The file setup.py of a package. `start` is the function that runs the program, as
+    `module:function`; `more` are further lines of `data_files`."""
     return f"""\
 # {made_by(machine)}
 from setuptools import setup
@@ -74,15 +81,14 @@ setup(
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/{name}"]),
         ("share/{name}", ["package.xml"]),
-        ("share/{name}/launch", ["launch/{program}.launch.py"]),
-    ],
+{more}    ],
     install_requires=["setuptools", "smachac"],
     zip_safe=True,
     maintainer="TODO: who keeps it",
     maintainer_email="todo@example.com",
     description={string(summary(machine))},
     license="TODO: its license",
-    entry_points={{"console_scripts": ["{program} = {name}.{program}:run_node"]}},
+    entry_points={{"console_scripts": ["{stem(machine)} = {name}.{start}"]}},
 )
 """
 
