@@ -285,9 +285,17 @@ def _structure(module: Module, node: ast.ClassDef, library: UserCode) -> ClassFa
     """The facts about the structure of a class and the flow of `execute`."""
     own = with_bases(module, node, library)
     flow, _, place = _execute(own, library)
+    name = Word(node.name, name_span(module.text, node))
+    return _facts_of_flow(name, (*_faults(own, module, node), *slips(own)), flow, place)
+
+
+def _facts_of_flow(
+    name: Word, faults: tuple[ClassFault, ...], flow: Flow, place: Span | None
+) -> ClassFacts:
+    """The facts about a class with its faults and the flow of `execute`, which is at `place`."""
     return ClassFacts(
-        name=Word(node.name, name_span(module.text, node)),
-        faults=(*_faults(own, module, node), *slips(own)),
+        name=name,
+        faults=faults,
         endings=flow.endings,
         complete=flow.complete and not flow.passed,
         execute=place,
@@ -310,24 +318,15 @@ def _facts(module: Module, node: ast.ClassDef, library: UserCode) -> ClassFacts:
     flow, execute, place = _execute(own, library)
     if execute is not None and any(_is_userdata(fault, execute) for fault in undefined):
         flow = Flow()  # its code uses another name for the userdata
-    return ClassFacts(
-        name=Word(node.name, name_span(module.text, node)),
-        faults=(*_faults(own, module, node), *undefined) if whole else (),
+    name = Word(node.name, name_span(module.text, node))
+    faults = (*_faults(own, module, node), *undefined) if whole else ()
+    return replace(
+        _facts_of_flow(name, faults, flow, place),
         parameters=_parameters(own) if whole else None,
         outcomes=lists.get("outcomes", ()) if lists is not None else None,
         inputs=_together(lists, "input_keys"),
         outputs=_together(lists, "output_keys"),
         passed=tuple(_passed(module.text, node)) if own.root == "state" else (),
-        endings=flow.endings,
-        complete=flow.complete and not flow.passed,
-        execute=place,
-        silent=flow.silent,
-        always_silent=flow.always_silent,
-        open_end=flow.open_end,
-        in_loop=flow.in_loop,
-        reads=flow.reads,
-        writes=flow.writes,
-        closed=bool(flow.endings) and all(ending.written is not None for ending in flow.endings),
         stub=execute is not None and all(map(_does_nothing, execute.body)),
         checks_stop=any(_checks_stop(class_) for _, class_ in own.classes),
         values=written_values(own, execute, library) if execute is not None else (),
