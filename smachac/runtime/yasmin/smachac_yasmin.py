@@ -30,7 +30,11 @@ class Keys:
 
     def __init__(self, blackboard, skill, prefix=None):
         self.__dict__.update(
-            _blackboard=blackboard, _skill=skill, _state=skill.state, _prefix=prefix
+            _blackboard=blackboard,
+            _skill=skill,
+            _state=skill.state,
+            _prefix=prefix,
+            _path=skill.path,
         )
 
     def _name(self, key):
