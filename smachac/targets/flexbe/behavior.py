@@ -298,7 +298,7 @@ def _edges(path: str, node: Container, child: Node, labels: Names) -> Iterator[t
 def _set_up(machine: Machine, behavior: Behavior) -> Doc:
     """The call with what FlexBE's containers have no argument for."""
     given = ["self.node"] if behavior.is_node else []
-    given += [f"self.{attribute(parameter)}" for parameter in behavior.parameters]
+    given += [f"{known.name}=self.{attribute(known)}" for known in behavior.parameters]
     arguments: list[tuple[str, Doc]] = [
         ("", call("smach_program.build", [("", text) for text in given])),
         ("", string(machine.root.name)),
