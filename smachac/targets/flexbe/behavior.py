@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from itertools import chain
+from keyword import iskeyword
 
 from smachac.diagnostics.source import assert_never
 from smachac.ir import nodes
@@ -163,7 +164,7 @@ def _word(path: str) -> str:
 
 
 def _is_attribute(key: str) -> bool:
-    return re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", key) is not None
+    return re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", key) is not None and not iskeyword(key)
 
 
 def _is_plain(data: Data) -> bool:
