@@ -30,7 +30,7 @@ from smachac.frontend.types.interface_code import (
     python_code,
 )
 from smachac.frontend.types.interface_fields import interface_fields
-from smachac.frontend.types.type_annotations import as_record, read_type
+from smachac.frontend.types.type_annotations import as_record, read_type, with_types
 from smachac.frontend.types.type_classes import (
     ALL_GIVEN,
     class_facts,
@@ -120,6 +120,8 @@ def _read_interface(
     code = code_by_language(sections["code"], report)
     if "python" not in code and library.template(f"{name}.tpl.py") is not None:
         code["python"] = f"{name}.tpl.py"
+    for part in ("variables", "input_keys", "output_keys"):
+        sections[part] = with_types(sections[part], library.types)
     parts = ("variables", "input_keys", "output_keys", "outcomes")
     given = frozenset(part for part in parts if _is_starred(sections[part]))
     optional = _optional_outcomes(sections["outcomes"])

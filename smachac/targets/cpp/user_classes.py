@@ -10,11 +10,18 @@ from smachac.ir.nodes import Data, Key, Leaf, StateType
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.types import Bounds, Type
 from smachac.records import dataclass
-from smachac.targets.cpp.bounded import bounded, loose
+from smachac.targets.cpp.bounded import bounded, has_bound, loose
 from smachac.targets.cpp.builtin_states import STOP, LeafCode
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import ContainerScope, converts
-from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value, plain
+from smachac.targets.cpp.types import (
+    UnportableError,
+    cpp_literal,
+    cpp_type,
+    cpp_value,
+    plain,
+    without_classes,
+)
 
 REFUSED = "the C++ compiler refuses the class"
 """The effect of most faults of a class in C++."""
@@ -130,7 +137,7 @@ def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope, number: int =
             bounded_outputs=tuple(
                 (out, cpp_literal(key.name))
                 for key, out in zip(type_.output_keys, outs, strict=True)
-                if scope.key(names[key.name]).name in ("text", "bounded")
+                if has_bound(scope.key(names[key.name]))
             ),
             written=tuple(
                 f"{cpp_literal(key.name)}, {out}{hidden(key)}"
@@ -264,13 +271,18 @@ def interface_hash(type_: StateType) -> str:
     """A hash of all parts of an interface that its class depends on."""
     parts = [
         type_.name,
-        *(f"var {name} {plain(variable.type)}" for name, variable in type_.variables.items()),
-        *(f"in {key.name} {plain(key.type)}" for key in type_.input_keys),
-        *(f"out {key.name} {plain(key.type)}" for key in type_.output_keys),
+        *(f"var {name} {_written(variable.type)}" for name, variable in type_.variables.items()),
+        *(f"in {key.name} {_written(key.type)}" for key in type_.input_keys),
+        *(f"out {key.name} {_written(key.type)}" for key in type_.output_keys),
         *(f"outcome {outcome.name}" for outcome in type_.outcomes),
         f"stop {stops(type_)}",
     ]
     return f"0x{zlib.crc32(chr(10).join(parts).encode()):08x}U"
+
+
+def _written(type_: Type) -> str:
+    """A type as the interface has it: records with their fields, whatever the class in C++."""
+    return str(plain(without_classes(type_)))
 
 
 def step_fields(part: str, keys: Iterable[Key], bounds: Bounds) -> dict[str, str]:

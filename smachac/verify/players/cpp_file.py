@@ -16,6 +16,7 @@ from pathlib import Path, PurePosixPath
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
+from smachac.frontend.loader import Library
 from smachac.ir.nodes import Leaf, Machine, Node
 from smachac.ir.traversal import outcome_names, own_outcomes, walk
 from smachac.ir.types import Type
@@ -46,14 +47,14 @@ _PLAIN_NAME = re.compile(r"(?:(?P<space>[A-Za-z_][\w:]*)::)?(?P<name>[A-Za-z_]\w
 
 
 def file_player(
-    source: Source, machine: Machine, report: Report, *, folders: Sequence[Path]
+    source: Source, machine: Machine, library: Library, report: Report, *, folders: Sequence[Path]
 ) -> Player:
     """A player of a C++ header on disk, which may include headers from `folders`.
 
     Adds to `report` what C++ cannot express of the machine. Raises UnplayableError, with the place
     in the file, if the header has other states or outcomes than the script, or does not compile.
     """
-    planned = plan(machine)
+    planned = plan(machine, library=library)
     report.extend(Program(planned, ()).refused())
 
     def play(cases: Sequence[TestCase]) -> Iterator[list[Event]]:

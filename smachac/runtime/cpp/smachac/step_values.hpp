@@ -235,6 +235,9 @@ template <std::size_t N> struct PoseStampedOf {
   friend bool operator!=(const PoseStampedOf &a, const PoseStampedOf &b) { return !(a == b); }
 };
 
+template <class T> struct is_stamped : std::false_type {};
+template <std::size_t N> struct is_stamped<PoseStampedOf<N>> : std::true_type {};
+
 } // namespace step
 
 namespace detail {
@@ -319,6 +322,33 @@ template <class To, class From> To convert(Fault &fault, const From &from) {
   return found;
 }
 
+/// Whether a text or list in a value was given more than its bound since the last call.
+template <class T> bool went_over(T &value) {
+  if constexpr (smachac::detail::is_text<T>::value) {
+    return value.is_over() && value.went_over();
+  } else if constexpr (smachac::detail::is_array<T>::value || smachac::detail::is_list<T>::value) {
+    bool found = false;
+    if constexpr (!smachac::detail::is_array<T>::value) {
+      found = value.is_over() && value.went_over();
+    }
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      found = went_over(value[i]) || found;
+    }
+    return found;
+  } else if constexpr (smachac::detail::is_optional<T>::value) {
+    return value.has_value() && went_over(*value);
+  } else if constexpr (Fields<T>::value) {
+    bool found = false;
+    smachac::detail::each_field(
+        value, [&found](const char *, auto &member) { found = went_over(member) || found; });
+    return found;
+  } else if constexpr (is_stamped<T>::value) {
+    return went_over(value.frame_id);
+  } else {
+    return false;
+  }
+}
+
 // Keys
 
 namespace detail {
@@ -338,6 +368,8 @@ public:
     state_ = KeyState::written;
     return own().value();
   }
+  /// Whether a part of the value was given more than its bound since the last call.
+  bool exceeded() { return step::went_over(own().value()); }
   /// Writes the value of a state.
   template <class U> void write(Fault &fault, const char *name, const U &value) {
     set_to(fault, name, value, KeyState::written);
@@ -532,6 +564,20 @@ template <class T> decltype(auto) viewed(const T &value) {
   } else {
     return (value);
   }
+}
+
+/// A field of a record.
+template <class T> decltype(auto) field(const T &member) { return viewed(member); }
+
+/// A record with these values of its fields, as `put` converts them, in the order of
+/// `Fields<T>::names`.
+template <class T, class... Values> T made(Fault &fault, const Values &...values) {
+  T found{};
+  smachac::detail::each_pair(
+      Fields<T>::members(found), std::tie(values...),
+      [&fault](auto &member, const auto &value) { put(fault, member, value); },
+      std::make_index_sequence<sizeof...(Values)>());
+  return found;
 }
 
 template <class T> auto present(Fault &fault, const std::optional<T> &value) {
@@ -772,6 +818,23 @@ template <class T> void write_json(const Sink &sink, const T &value) {
     list(value.position, value.orientation);
   } else if constexpr (std::is_same_v<T, Transform>) {
     list(value.translation, value.rotation);
+  } else if constexpr (Fields<T>::value) {
+    const char *before = "{\"";
+    smachac::detail::each_field(value, [&](const char *name, const auto &member) {
+      if constexpr (smachac::detail::is_optional<std::decay_t<decltype(member)>>::value) {
+        if (!member.has_value()) {
+          return;
+        }
+      }
+      sink(before);
+      write_escaped(sink, name);
+      sink("\": ");
+      write_json(sink, member);
+      before = ", \"";
+    });
+    sink(before[0] == '{' ? "{}" : "}");
+  } else if constexpr (Opaque<T>::value) {
+    sink("null");
   } else {
     sink("{\"frame_id\": ");
     write_json(sink, value.frame_id);
