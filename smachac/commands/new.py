@@ -152,11 +152,14 @@ def _state(name: str, arguments: Namespace) -> int:
     language: str = arguments.target
     if not is_type_name(name):
         return usage(f"`{name}` is not a name for a state type: write it as `GraspPart`")
+    folder = Path()
+    report: Report = []
+    library = disk_library(folder / "main.yml", report)
     try:
         wanted = NewStateType(
             name=name,
-            inputs=[key_and_type(text) for text in arguments.input],
-            outputs=[key_and_type(text) for text in arguments.output],
+            inputs=[key_and_type(text, library.types) for text in arguments.input],
+            outputs=[key_and_type(text, library.types) for text in arguments.output],
             outcomes=arguments.outcome or ["succeeded", "aborted"],
         )
         for outcome in wanted.outcomes:
@@ -164,10 +167,7 @@ def _state(name: str, arguments: Namespace) -> int:
                 raise BadNameError(f"`{outcome}` is not a name for an outcome")
     except BadNameError as error:
         return usage(str(error))
-    folder = Path()
-    report: Report = []
     files: Files = {}
-    library = disk_library(folder / "main.yml", report)
     there = library.own_template(f"{name}.yml")
     if there is None:
         with_schema = bool(present_files(folder, {INTERFACE_SCHEMA: ""}))
@@ -182,9 +182,10 @@ def _state(name: str, arguments: Namespace) -> int:
     from smachac.targets.cpp.types import UnportableError
 
     try:
-        files[code_file(name, language)] = stub(type_, language)
+        files[code_file(name, language)] = stub(type_, language, library)
     except UnportableError as error:
-        return usage(f"C++ cannot express the interface: {error}")
+        help = f"\n{error.help}" if error.help else ""
+        return usage(f"C++ cannot express the interface: {error}{help}")
     package = code_file(name, language).rpartition("/")[0] + "/__init__.py"
     if language == "python" and not present_files(folder, {package: ""}):
         files[package] = ""

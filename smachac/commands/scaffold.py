@@ -6,7 +6,10 @@ import re
 from collections.abc import Mapping, Sequence
 from keyword import iskeyword
 
+from smachac.checks.type_words import named
 from smachac.diagnostics.diagnostic import did_you_mean
+from smachac.frontend.loader import Library
+from smachac.frontend.types.type_names import Aliases, filled
 from smachac.ir.nodes import StateType
 from smachac.ir.types import WORDS, Type, parse_type, unknown_words
 from smachac.records import dataclass
@@ -32,15 +35,19 @@ class NewStateType:
     outcomes: Sequence[str] = ("succeeded", "aborted")
 
 
-def key_and_type(text: str) -> tuple[str, str]:
-    """`target` or `target=Pose`. Raises BadNameError."""
+def key_and_type(text: str, names: Aliases) -> tuple[str, str]:
+    """`target` or `target=Pose`; `names` are the types that the project file names. Raises
+    BadNameError."""
     key, _, named = text.partition("=")
     if not key.isidentifier():
         raise BadNameError(f"`{key}` is not a name for a key")
-    if named and parse_type(named) is None:
+    type_ = parse_type(filled(named or "any", names))
+    if type_ is None:
         raise BadNameError(f"`{named}` is not a type")
-    for word in unknown_words(type_) if (type_ := parse_type(named or "any")) is not None else ():
-        near = did_you_mean(word, WORDS) or "types of ROS have the form `geometry_msgs/Twist`"
+    for word in unknown_words(type_):
+        ros = "types of ROS have the form `geometry_msgs/Twist`"
+        near = did_you_mean(word, [*names, *WORDS])
+        near = near or f"{ros}; `[types]` of smachac.toml names others"
         raise BadNameError(f"there is no type `{word}`\n{near}")
     return key, named or "any"
 
@@ -93,9 +100,11 @@ def code_file(name: str, language: str) -> str:
     return f"{MODULES}/{file_stem(name)}.py"
 
 
-def stub(type_: StateType, language: str) -> str:
-    """Code that fits an interface and does nothing yet."""
-    return _cpp_stub(type_) if language == "cpp" else _python_stub(type_)
+def stub(type_: StateType, language: str, library: Library) -> str:
+    """Code that fits an interface and does nothing yet. Raises UnportableError."""
+    if language == "cpp":
+        return _cpp_stub(type_, library)
+    return _python_stub(type_, library.types)
 
 
 def _summary(type_: StateType) -> str:
@@ -109,7 +118,12 @@ def _outcomes(type_: StateType) -> list[str]:
     return [outcome.name for outcome in type_.outcomes] or ["succeeded"]
 
 
-def _python_stub(type_: StateType) -> str:
+def _python_stub(type_: StateType, names: Aliases) -> str:
+    def written(type_: Type) -> str:
+        """A type with its names, and the records that these are."""
+        text = named(type_, names)
+        return text if text == str(type_) else f"{text}, which is {type_}"
+
     outcomes = _outcomes(type_)
     quoted = _summary(type_).replace('"', "'")
     arguments = [f"outcomes={outcomes!r}"]
@@ -133,8 +147,11 @@ def _python_stub(type_: StateType) -> str:
         *(f"        self.{name} = {name}" for name in type_.variables),
         "",
         "    def execute(self, userdata):",
-        *(f"        # {_access(key.name)}: {key.type}" for key in type_.input_keys),
-        *(f"        {_access(key.name)} = None  # {key.type}" for key in type_.output_keys),
+        *(f"        # {_access(key.name)}: {written(key.type)}" for key in type_.input_keys),
+        *(
+            f"        {_access(key.name)} = None  # {written(key.type)}"
+            for key in type_.output_keys
+        ),
         f"        return {outcomes[0]!r}",
     ]
     return "\n".join(lines) + "\n"
@@ -146,11 +163,16 @@ def _access(key: str) -> str:
     return f"userdata.{key}" if named else f"userdata[{key!r}]"
 
 
-def _cpp_stub(type_: StateType) -> str:
+def _cpp_stub(type_: StateType, library: Library) -> str:
     """A class for the target `cpp` (docs/cpp.md). Raises UnportableError."""
     from smachac.targets.cpp.identifiers import identifier
+    from smachac.targets.cpp.records import project_names
     from smachac.targets.cpp.types import cpp_type
     from smachac.targets.cpp.user_classes import field_type, interface_hash, parameter_type, stops
+
+    names = project_names(library)
+    type_ = names.state_type(type_)
+    headers = sorted({"smachac/smachac.hpp", *names.headers(type_)})
 
     def parameter(name: str, of: Type) -> str:
         text = parameter_type(of)
@@ -170,7 +192,7 @@ def _cpp_stub(type_: StateType) -> str:
         "",
         "#include <cstdint>",
         "",
-        '#include "smachac/smachac.hpp"',
+        *(f'#include "{header}"' for header in headers),
         "",
         f"namespace {HEADERS} {{",
         "",

@@ -216,7 +216,7 @@ def _generated_player(
     from smachac.verify.players import cpp, python, scxml
 
     if target == "cpp":
-        return cpp.player(machine, report, bounds)
+        return cpp.player(machine, report, bounds, library)
     if target == "scxml":
         return scxml.player(machine, report, folders=[script.resolve().parent])
     files = build(machine, TARGET, library, report)

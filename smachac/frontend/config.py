@@ -227,8 +227,8 @@ def _types(source: Source, value: object, report: Report) -> Aliases:
             _wrong(source, name, message, help, report, ("type", name))
         elif type_ is None or unknown:
             what = f"`{unknown[0]}` is no type" if unknown else "this is no type"
-            help = did_you_mean(unknown[0], [*found, *WORDS]) if unknown else ""
-            help = help or "write a type in quotes, or a table of fields: {name = 'str'}"
+            near = did_you_mean(unknown[0], [*found, *WORDS]) if unknown else None
+            help = near or "write a type in quotes, or a table of fields: {name = 'str'}"
             _wrong(source, name, f"{what} (`{name}`)", help, report, ("type", name), at_value=True)
         else:
             found[name] = str(type_)

@@ -98,11 +98,11 @@ from smachac.frontend.text.yaml_tree import (
 from smachac.frontend.types.state_types import find_state_type
 from smachac.frontend.types.type_annotations import (
     TYPED,
-    Aliases,
     explain_aliases,
     read_aliases,
     typed,
 )
+from smachac.frontend.types.type_names import Aliases
 from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.nodes import FixedParam, Preset, StateType
 from smachac.ir.robot import Robot

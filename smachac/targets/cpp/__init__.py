@@ -20,7 +20,7 @@ from smachac.targets.cpp.header import header_of
 from smachac.targets.cpp.identifiers import member_identifier
 from smachac.targets.cpp.plan import Plan, plan
 from smachac.targets.cpp.project import OPTIONS, Project, project, project_files, runtime
-from smachac.targets.cpp.records import project_header, same_members
+from smachac.targets.cpp.records import project_header, record_names, same_members
 from smachac.targets.cpp.robot_header import robot_file, robot_header
 from smachac.targets.cpp.step_classes import refuse_other_methods
 from smachac.targets.cpp.types import UnportableError
@@ -31,7 +31,8 @@ from smachac.version import __version__
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """The header of a machine, `<name>.hpp`, that of its robot, and the files of the options."""
     wanted = project(context.options, context.library.bounds)
-    planned = plan(machine, wanted.bounds, context.library)
+    names = record_names(machine, context.library, stepped=wanted.bounds is not None)
+    planned = plan(machine, wanted.bounds, names)
     for name, one, other in same_members(planned.names):
         text = f"the fields `{one}` and `{other}` of `{name}` would both be named"
         text += f" `{member_identifier(one)}`"

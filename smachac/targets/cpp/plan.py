@@ -11,7 +11,6 @@ from pathlib import PurePath
 from smachac.analysis.type_inference import infer
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import NOWHERE, Span
-from smachac.frontend.loader import Library
 from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, Node, StateType
 from smachac.ir.script_paths import script_paths
 from smachac.ir.secret_keys import secret_keys
@@ -23,7 +22,7 @@ from smachac.targets.cpp.bounded import bounded, loose
 from smachac.targets.cpp.dialect import BLOCKING, FAULT, STEPPED, Dialect
 from smachac.targets.cpp.expressions import Spelling
 from smachac.targets.cpp.identifiers import clashes, identifier, outermost
-from smachac.targets.cpp.records import RecordNames, record_names
+from smachac.targets.cpp.records import RecordNames
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, plain
 from smachac.targets.errors import unsupported_by_target
 
@@ -126,12 +125,12 @@ class Plan:
         self.report.append(unsupported_by_target(span, "C++", str(error), help, names))
 
 
-def plan(machine: Machine, bounds: Bounds | None = None, library: Library | None = None) -> Plan:
+def plan(machine: Machine, bounds: Bounds | None = None, names: RecordNames | None = None) -> Plan:
     """The plan of a machine; names and types that C++ cannot express are refused. `bounds` make it
-    a stepped one; `library` has the names of types of the project file."""
+    a stepped one; `names` are those of records."""
     scopes: dict[str, ContainerScope] = {}
     paths = script_paths(machine.root)
-    names = record_names(machine, library, stepped=bounds is not None)
+    names = names or RecordNames(stepped=bounds is not None)
     found = Plan(machine=machine, names=names, scopes=scopes, paths=paths, bounds=bounds)
     keys = _types(found)
     machine = found.machine = replace(machine, state_types=_state_types(found))

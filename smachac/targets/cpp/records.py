@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Key, Machine, StateType
-from smachac.ir.types import Bounds, CppClass, Type, parse_type
-from smachac.records import dataclass
+from smachac.ir.types import ANY, Bounds, CppClass, Type, parse_type
+from smachac.records import dataclass, field
 from smachac.targets.cpp.bounded import bounded
 from smachac.targets.cpp.identifiers import identifier, member_identifier, outermost
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, fields_of, plain
@@ -37,13 +38,15 @@ class NamedRecord(NamedTuple):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordNames:
     """The records that have names: those of the project file, and those of the script alone, whose
-    structs are in the namespace `inner`. `classes` are classes of the user for types of messages.
+    structs are in the namespace `inner`. `classes` are classes of the user for types of messages,
+    `opaque` types whose values are a `std::any`.
     `stepped`: texts and lists in them have bounds."""
 
     project: tuple[NamedRecord, ...] = ()
     script: tuple[NamedRecord, ...] = ()
     inner: str = ""
-    classes: Mapping[str, CppClass]
+    classes: Mapping[str, CppClass] = field(default_factory=dict)
+    opaque: AbstractSet[str] = frozenset()
     stepped: bool = False
 
     @property
@@ -70,10 +73,30 @@ class RecordNames:
         """A type with structs in place of records. Raises UnportableError."""
         if type_.name in self.classes and not type_.args:
             return Type("class", (f"::{self.classes[type_.name].name}",))
+        if type_.name in self.opaque and not type_.args:
+            return ANY
         args = [self.with_structs(arg) if isinstance(arg, Type) else arg for arg in type_.args]
         if type_.name != "record":
             return Type(type_.name, (*args,))
         return Type("struct", (self.class_of(type_), *args))
+
+    def headers(self, type_: StateType) -> list[str]:
+        """The headers with the classes in a state type with structs, sorted."""
+        own = {f"::{own.name}": own.header for _, _, own in self.project if own is not None}
+        own |= {f"::{class_.name}": class_.header for class_ in self.classes.values()}
+
+        def classes(type_: Type) -> Iterator[str]:
+            if type_.name in ("struct", "class"):
+                yield str(type_.args[0])
+            for arg in type_.args:
+                if isinstance(arg, Type):
+                    yield from classes(arg)
+
+        types = [key.type for key in (*type_.input_keys, *type_.output_keys)]
+        types += [variable.type for variable in type_.variables.values()]
+        return sorted(
+            {own.get(name, self.header) for own_type in types for name in classes(own_type)}
+        )
 
     def state_type(self, type_: StateType) -> StateType:
         """A state type with structs in place of records. Raises UnportableError."""
@@ -105,16 +128,23 @@ def project_names(library: Library, *, stepped: bool = False) -> RecordNames:
     )
 
 
-def record_names(machine: Machine, library: Library | None, *, stepped: bool) -> RecordNames:
-    """The names of records for a machine. Without a library, all of them count as names of the
-    project file."""
-    if library is None:
-        return RecordNames(project=_named(machine.aliases.items(), {}), classes={}, stepped=stepped)
+def record_names(machine: Machine, library: Library, *, stepped: bool = False) -> RecordNames:
+    """The names of records for a machine."""
     own = ((name, text) for name, text in machine.aliases.items() if name not in library.types)
     return replace(
         project_names(library, stepped=stepped),
         script=_named(own, library.cpp_types),
         inner=f"{outermost(machine.root.name)}_types",
+    )
+
+
+def scripted_names(machine: Machine, library: Library | None, *, stepped: bool) -> RecordNames:
+    """The names of records for a program without the classes of the user, whose states perform test
+    cases: all of them count as names of the project file, and a value of a class is a `std::any`.
+    """
+    classes = library.cpp_types if library is not None else {}
+    return RecordNames(
+        project=_named(machine.aliases.items(), {}), opaque=frozenset(classes), stepped=stepped
     )
 
 
@@ -175,6 +205,8 @@ def _structs(
             continue
         if record.own is None:
             yield _struct(identifier(record.name), fields, space)
+        else:
+            yield "\n".join(_assertions(record.own.name, fields))
         yield _fields(names.class_of(record.type), fields)
 
 
@@ -205,6 +237,14 @@ def _fields(class_: str, fields: Mapping[str, str]) -> str:
     return _once(lines)
 
 
+def _assertions(class_: str, fields: Mapping[str, str]) -> Iterator[str]:
+    """The static assertions for a class of the user; their messages are instructions."""
+    for name, type_ in fields.items():
+        member = member_identifier(name)
+        yield f"static_assert(std::is_same_v<decltype(::{class_}::{member}), {type_}>,"
+        yield f'              "{class_}::{member} must be {type_}");'
+
+
 def _once(lines: list[str]) -> str:
     """Definitions that two headers of one program can have: the second one is left out. Other ones
     of the same names are an error of the compiler."""
@@ -216,7 +256,7 @@ def same_members(names: RecordNames) -> Iterator[tuple[str, str, str]]:
     """The records in which two fields would have one name in C++, with these fields."""
     for record in (*names.project, *names.script):
         first: dict[str, str] = {}
-        for field in map(str, record.type.args[::2]):
-            other = first.setdefault(member_identifier(field), field)
-            if other != field:
-                yield record.name, other, field
+        for name in map(str, record.type.args[::2]):
+            other = first.setdefault(member_identifier(name), name)
+            if other != name:
+                yield record.name, other, name

@@ -56,7 +56,10 @@ mappings."""
 
 LISTED = ("Point", "Quaternion", "Pose", "Transform")
 
-OTHER_TYPES = "declare the key as `any`, which is a `std::any` in C++; a class can cast its value"
+OTHER_TYPES = (
+    "name its class in C++ under `[cpp_types]` of smachac.toml; or declare the key as `any`, which"
+    " is a `std::any` in C++"
+)
 """The help for a type that C++ lacks, such as a message of ROS."""
 
 SCALARS = {

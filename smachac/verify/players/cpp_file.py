@@ -25,6 +25,7 @@ from smachac.runtime.tracing.writer import with_shown_paths
 from smachac.targets.cpp.builtin_states import built_in, enumeration
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import ContainerScope, Plan, member, place, plan, scope_name
+from smachac.targets.cpp.records import record_names
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_value, plain, script_data
 from smachac.targets.cpp.user_classes import (
     ClassCode,
@@ -54,7 +55,7 @@ def file_player(
     Adds to `report` what C++ cannot express of the machine. Raises UnplayableError, with the place
     in the file, if the header has other states or outcomes than the script, or does not compile.
     """
-    planned = plan(machine, library=library)
+    planned = plan(machine, names=record_names(machine, library))
     report.extend(Program(planned, ()).refused())
 
     def play(cases: Sequence[TestCase]) -> Iterator[list[Event]]:
@@ -128,6 +129,7 @@ class _Header:
         self._source = source
         self._machine = planned.machine
         self._scopes = planned.scopes
+        self._names = planned.names
         self._cases = cases
         self._found = scopes(source)
         self._stand_ins: dict[str, _StandIn] = {}
@@ -326,7 +328,10 @@ class _Header:
             path = folder / name
             path.parent.mkdir(parents=True, exist_ok=True)
             text = [line for stand_ins in classes.values() for line in _class(stand_ins)]
-            lines = ["#pragma once", '#include "smachac/smachac.hpp"', *text]
+            types = (code.type for ins in classes.values() if (code := ins[0].code) is not None)
+            own = sorted({header for type_ in types for header in self._names.headers(type_)})
+            included = (f'#include "{file}"' for file in ("smachac/smachac.hpp", *own))
+            lines = ["#pragma once", *included, *text]
             path.write_text("\n".join(lines) + "\n", "utf-8")
 
 

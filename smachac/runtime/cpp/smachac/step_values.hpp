@@ -92,9 +92,11 @@ public:
     assign(text);
     return *this;
   }
+  /// A copy of a text that went over its bound counts as such a text too.
   Text &operator=(const Text &text) {
     if (this != &text) {
       assign(text.view());
+      over_ = over_ || text.over_;
     }
     return *this;
   }
@@ -124,10 +126,14 @@ public:
   TextOf() : Text(storage_, N) {}
   TextOf(std::string_view text) : TextOf() { assign(text); }   // NOLINT: `TextOf<8> side{"left"}`
   TextOf(const char *text) : TextOf(std::string_view(text)) {} // NOLINT
-  TextOf(const TextOf &text) : TextOf(text.view()) {}
+  TextOf(const TextOf &text) : TextOf() { Text::operator=(text); }
   ~TextOf() = default;
   TextOf &operator=(const TextOf &text) {
     Text::operator=(text);
+    return *this;
+  }
+  TextOf &operator=(const char *text) {
+    assign(text);
     return *this;
   }
   using Text::operator=;
@@ -176,9 +182,11 @@ public:
   void replace(std::size_t i, const T &item) { data_[i] = item; }
   void resize(std::size_t size) { size_ = static_cast<std::uint16_t>(size); }
   void clear() { size_ = 0; }
+  /// A copy of a list that went over its bound counts as such a list too.
   List &operator=(const List &list) {
     if (this != &list) {
       assign(list);
+      over_ = over_ || list.over_;
     }
     return *this;
   }
@@ -213,7 +221,7 @@ template <class T, std::size_t N> class ListOf : public List<T> {
 public:
   ListOf() : List<T>(storage_, N) {}
   ListOf(std::initializer_list<T> items) : ListOf() { this->assign(items); }
-  ListOf(const ListOf &list) : ListOf() { this->assign(list); }
+  ListOf(const ListOf &list) : ListOf() { List<T>::operator=(list); }
   ~ListOf() = default;
   ListOf &operator=(const ListOf &list) {
     List<T>::operator=(list);
