@@ -374,7 +374,8 @@ def _type(tree: Tree | None, report: Report) -> Type:
         report.append(wrong_shape(tree.span, message, help, arguments=("type", text)))
     if not isinstance(tree, Scalar) or not isinstance(tree.value, str):
         return ANY
-    return read_type(tree.value, Word(tree.value, tree.span), report) or ANY
+    word = Word(tree.value, tree.span)
+    return read_type(tree.value, word, report, "`[types]` of smachac.toml") or ANY
 
 
 def _variables(section: Section, report: Report) -> dict[str, VariableType]:

@@ -53,8 +53,9 @@ def explain_aliases(aliases: Aliases, outer: Aliases, source: Source, report: Re
     return found
 
 
-def read_type(text: str, place: Word, report: Report) -> Type | None:
-    """The type that a text names; SM017 at `place` if it names none."""
+def read_type(text: str, place: Word, report: Report, where: str = "`types:`") -> Type | None:
+    """The type that a text names; SM017 at `place` if it names none. `where` are the names of
+    types that its file can use, for the help."""
     type_ = parse_type(text)
     if type_ is None:
         report.append(bad_type(place, WORDS))
@@ -65,7 +66,7 @@ def read_type(text: str, place: Word, report: Report) -> Type | None:
         meant = _fields_turned_back(type_, turned)
         name, type_name = next((pair for pair in turned if pair[0] == unknown[0]), ("", ""))
         help = f"write `{name}: {type_name}`: the name of the field comes first" if name else None
-        report.append(bad_type(place, WORDS, unknown[0], help=help))
+        report.append(bad_type(place, WORDS, unknown[0], help=help, where=where))
         type_ = meant if help else type_
     return type_
 

@@ -166,6 +166,8 @@ def _value(data: Data, type_: Type) -> str:
             return f"{cpp_type(type_)}{{}}"
         case "optional", _:
             return f"{cpp_type(type_)}{{{_value(data, _inside(type_))}}}"
+        case "class", None:  # an object of the user's class, as traces show it
+            return f"{cpp_type(type_)}{{}}"
         case "none", None:
             return "smachac::None{}"
         case "bool", bool():

@@ -234,4 +234,7 @@ def _written(type_: Type) -> Type:
             return Type("list", (_written(item), size))
         case (("array" | "optional"), (Type() as item, *rest)):
             return Type(type_.name, (_written(item), *rest))
+        case "struct", parts:
+            fields = (_written(part) if isinstance(part, Type) else part for part in parts)
+            return Type("struct", tuple(fields))
     return loose(type_)
