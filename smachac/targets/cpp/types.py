@@ -108,6 +108,8 @@ def cpp_type(type_: Type) -> str:
             return f"smachac::step::PoseStampedOf<{size}>"
         case (("struct" | "class"), (str(class_), *_)):
             return class_
+    if type_.name == "record":
+        raise UnportableError(f"C++ needs a name for the record `{type_}`")
     message = f"the members of the type `{type_}` are unknown"
     raise UnportableError(message, help=OTHER_TYPES)
 
