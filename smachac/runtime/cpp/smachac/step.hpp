@@ -380,7 +380,8 @@ public:
   }
   /// The result of a step; a failure if the state has gone over the bound of an output.
   template <class T> int within_bound(int result, Key<T> &key, const char *name) {
-    return key.exceeded() ? over(name) : result;
+    const bool searched = any_went_over.load(std::memory_order_relaxed);
+    return searched && key.exceeded() ? over(name) : result;
   }
 
   /// The failure of a state.

@@ -7,6 +7,7 @@
 #define SMACHAC_STEP_VALUES_HPP
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -53,6 +54,10 @@ private:
 };
 
 // Texts and lists
+
+/// Whether a text or list of this program was ever given more than its bound. Until then, no output
+/// is searched for one: a list of texts would cost each step some instructions for each text.
+inline std::atomic<bool> any_went_over{false};
 
 /// A text with a bound: at most `capacity()` bytes of UTF-8. Its storage is in a TextOf or a Key.
 class Text {
@@ -109,8 +114,9 @@ protected:
       : data_(data), capacity_(static_cast<std::uint16_t>(capacity)) {}
 
 private:
-  bool over() {
+  [[gnu::cold]] bool over() {
     over_ = true;
+    any_went_over.store(true, std::memory_order_relaxed);
     return false;
   }
 
@@ -171,8 +177,7 @@ public:
   /// fails.
   bool push_back(const T &item) {
     if (size_ == capacity_) {
-      over_ = true;
-      return false;
+      return over();
     }
     data_[size_++] = item;
     return true;
@@ -193,7 +198,7 @@ public:
   /// Sets all items from another sequence, which may have more of them than the bound.
   template <class Items> void assign(const Items &items) {
     if (items.size() > capacity_) {
-      over_ = true;
+      over();
       return;
     }
     size_ = 0;
@@ -210,6 +215,12 @@ protected:
       : data_(data), capacity_(static_cast<std::uint16_t>(capacity)) {}
 
 private:
+  [[gnu::cold]] bool over() {
+    over_ = true;
+    any_went_over.store(true, std::memory_order_relaxed);
+    return false;
+  }
+
   T *data_;
   std::uint16_t size_ = 0;
   std::uint16_t capacity_;
