@@ -9,7 +9,15 @@ import sys
 from argparse import Namespace
 
 from smachac.commands.arguments import colour, quiet
-from smachac.commands.output import FINDINGS, OK, print_report, shown, usage, without_notes
+from smachac.commands.output import (
+    FINDINGS,
+    OK,
+    print_report,
+    shown,
+    target_options,
+    usage,
+    without_notes,
+)
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -26,6 +34,7 @@ examples:
   smachac new state Grasp            templates/Grasp.yml and robot_states/grasp.py
   smachac new state Grasp --input target=Pose --output "width=float<m>" --outcome held
   smachac new state Grasp --target cpp     include/robot_states/grasp.hpp
+  smachac new state Grasp --target cpp --option mode=step    for a stepped machine
   smachac new scenario main.yml      scenarios/OUTCOME.yml for each outcome, for `run --mock`
 
 Existing files are never overwritten.
@@ -47,6 +56,8 @@ def new_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--outcome", action="append", default=[], metavar="NAME",
                         help="an outcome of the state type, or one that a scenario ends with"
                         " (repeatable)")  # fmt: skip
+    parser.add_argument("--option", action="append", default=[], metavar="NAME=VALUE",
+                        help="an option of the target cpp, as for `build`: mode=step")  # fmt: skip
     quiet(parser)
     colour(parser)
 
@@ -150,6 +161,21 @@ def _state(name: str, arguments: Namespace) -> int:
     from smachac.frontend.types.state_types import find_state_type
 
     language: str = arguments.target
+    stepped = False
+    if arguments.option:
+        from smachac.targets import OptionError
+        from smachac.targets.cpp import TARGET
+        from smachac.targets.cpp.project import project
+
+        options = target_options(arguments.option, TARGET)
+        if isinstance(options, int):
+            return options
+        if language != "cpp":
+            return usage("--option is for `--target cpp`")
+        try:
+            stepped = project(options).bounds is not None
+        except OptionError as error:
+            return usage(f"--option {error}")
     if not is_type_name(name):
         return usage(f"`{name}` is not a name for a state type: write it as `GraspPart`")
     folder = Path()
@@ -182,7 +208,7 @@ def _state(name: str, arguments: Namespace) -> int:
     from smachac.targets.cpp.types import UnportableError
 
     try:
-        files[code_file(name, language)] = stub(type_, language, library)
+        files[code_file(name, language)] = stub(type_, language, library, stepped=stepped)
     except UnportableError as error:
         help = f"\n{error.help}" if error.help else ""
         return usage(f"C++ cannot express the interface: {error}{help}")

@@ -405,3 +405,21 @@ def test_a_stub_has_the_types_of_the_project(
     assert "did you mean `Part`?" in capsys.readouterr().err
     assert main(["new", "state", "Drop", "--target", "cpp", "--input", "part={a: int}"]) == 2
     assert "under `[types]` of smachac.toml" in capsys.readouterr().err
+
+
+def test_a_stub_for_a_stepped_machine(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "smachac.toml").write_text("bounds = {text = 8}\n")
+    call = ["new", "state", "Take", "--target", "cpp", "--option", "mode=step"]
+    assert main([*call, "--input", "names=list[str]", "--output", "seen=str"]) == 0
+    text = (tmp_path / "include" / "robot_states" / "take.hpp").read_text()
+    assert "const smachac::step::List<smachac::step::TextOf<8>> &names; }" in text
+    assert "smachac::step::Key<smachac::step::Text> &seen; }" in text
+    assert "step(smachac::step::Context &context, In in, Out out) {" in text
+    capsys.readouterr()
+    assert main(["new", "state", "Drop", "--option", "mode=step"]) == 2
+    assert "--option is for `--target cpp`" in capsys.readouterr().err
+    assert main([*call[:-1], "mode=other"]) == 2
+    assert "`mode` must be `blocking` or `step`" in capsys.readouterr().err

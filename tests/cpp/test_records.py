@@ -257,6 +257,59 @@ def test_a_text_beyond_its_bound_in_a_record_is_a_failure(
     assert compiler.run(STEPPED, tmp_path, *flags) == told
 
 
+SAY = """
+name: Say
+variables:
+  label: {type: str, default: hello}
+  gains: {type: "list[float]", default: [1.0, 2.5]}
+  part: {type: Part, default: {name: bolt, shelf: left}}
+outcomes: {said: {}}
+code: {cpp: {header: shop/say.hpp, class: "shop::Say"}}
+"""
+SAYS = """
+name: looks
+outcomes: [done]
+states: [{SAY: {template: Say, label: "h\u00f6", transitions: {said: done}}}]
+"""
+SAY_CLASS = """
+#pragma once
+#include "smachac/step.hpp"
+#include "smachac/step_types.hpp"
+namespace shop {
+class Say {
+public:
+  enum class Outcome { said };
+  static constexpr std::uint32_t smachac_interface = NUMBER;
+  Say(std::string_view label, const smachac::step::List<double> &gains,
+      const smachac::step::types::Part &part)
+      : fits(label.size() == 3 && gains.size() == 2 && gains[1] == 2.5 && part.name == "bolt") {}
+  smachac::step::Result<Outcome> step(smachac::step::Context &context) {
+    if (!fits) {
+      return context.error("other values");
+    }
+    return Outcome::said;
+  }
+  bool fits;
+};
+}
+"""
+
+
+@COMPILERS
+@pytest.mark.slow
+def test_variables_of_a_stepped_class_need_no_heap(
+    compiler: Compiler, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    script = project(tmp_path, SAYS, Say=SAY)
+    header = tmp_path / "include" / "shop" / "say.hpp"
+    header.write_text(SAY_CLASS.replace("NUMBER", "1U"))
+    header.write_text(SAY_CLASS.replace("NUMBER", number(script, capsys)))
+    options = ["-o", str(tmp_path / "out"), "--option", "mode=step", "-q"]
+    assert main(["build", str(script), "--target", "cpp", *options]) == 0
+    flags = [f"-I{tmp_path / 'out'}", f"-I{tmp_path / 'include'}", *BARE]
+    assert compiler.run(STEPPED, tmp_path, *flags) == "done\n"
+
+
 READS = """
 name: reads
 outcomes: [done]

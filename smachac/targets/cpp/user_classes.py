@@ -123,7 +123,7 @@ def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope, number: int =
     def hidden(key: Key) -> str:
         return ", true" if names[key.name] in scope.secret else ""
 
-    made = [*map(argument, code.parameters), *_variables(type_, leaf)]
+    made = [*map(argument, code.parameters), *_variables(type_, leaf, scope.bounds)]
     if scope.bounds is not None:
         for part, keys in (("In", type_.input_keys), ("Out", type_.output_keys)):
             step_fields(part, keys, scope.bounds)  # raises the reason
@@ -227,18 +227,35 @@ def _output(scope: ContainerScope, key: Key, outer: str) -> str:
     return scope.object(outer)
 
 
-def _variables(type_: StateType, leaf: Leaf) -> list[str]:
+def _variables(type_: StateType, leaf: Leaf, bounds: Bounds | None) -> list[str]:
     """The arguments for the variables of the interface, in its order, with its defaults."""
     set_: dict[str, Data] = {variable.name: variable.value.data for variable in leaf.variables}
     found = []
     for name, variable in type_.variables.items():
         if name not in set_ and variable.default is not None:
             set_[name] = variable.default.data
+        value = set_.get(name)
         try:
-            found.append(cpp_value(set_.get(name), plain(variable.type)))
+            wanted = (
+                variable.type if bounds is None else _constant_type(variable.type, value, bounds)
+            )
+            found.append(cpp_value(value, wanted))
         except UnportableError as error:
-            raise UnportableError(f"the variable `{name}`: {error}") from error
+            raise UnportableError(f"the variable `{name}`: {error}", help=error.help) from error
     return found
+
+
+def _constant_type(type_: Type, value: Data, bounds: Bounds) -> Type:
+    """The storage of a constant in a stepped machine: a text or list is as large as its value.
+    Raises UnportableError for a type without a bound in it."""
+    match type_.name, type_.args, value:
+        case "str", _, str():
+            return Type("text", (len(value.encode("utf-8", "surrogatepass")),))
+        case "list", (Type() as item, *_), tuple():
+            return Type("bounded", (bounded(item, bounds), len(value)))
+        case "optional", (Type() as item,), _:
+            return Type("optional", (_constant_type(item, value, bounds),))
+    return bounded(type_, bounds)
 
 
 def step_field_type(part: str, type_: Type) -> str:
@@ -254,6 +271,11 @@ def step_field_type(part: str, type_: Type) -> str:
     if part == "Out":
         return f"smachac::step::Key<{text}> &"
     return text if type_.name in (*BY_VALUE, "text") else f"const {text} &"
+
+
+def step_parameter_type(type_: Type, bounds: Bounds) -> str:
+    """The type of a parameter for a constant in a stepped machine. Raises UnportableError."""
+    return step_field_type("In", _stored(type_, bounds))
 
 
 def parameter_type(type_: Type) -> str:
