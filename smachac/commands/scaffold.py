@@ -167,7 +167,7 @@ def _access(key: str) -> str:
 def _cpp_stub(type_: StateType, library: Library, *, stepped: bool) -> str:
     """A class for the target `cpp` (docs/cpp.md, docs/cpp_step.md). Raises UnportableError."""
     from smachac.targets.cpp.identifiers import identifier
-    from smachac.targets.cpp.records import project_names
+    from smachac.targets.cpp.records import key_types, project_names
     from smachac.targets.cpp.types import cpp_type
     from smachac.targets.cpp.user_classes import (
         field_type,
@@ -181,7 +181,7 @@ def _cpp_stub(type_: StateType, library: Library, *, stepped: bool) -> str:
     names = project_names(library, stepped=stepped)
     type_ = names.state_type(type_)
     runtime = "smachac/step.hpp" if stepped else "smachac/smachac.hpp"
-    headers = sorted({runtime, *names.headers(type_)})
+    headers = sorted({runtime, *names.headers(key_types(type_))})
 
     def fields(part: str, keys: Sequence[Key]) -> dict[str, str]:
         """The fields of `In` or `Out` with their types."""

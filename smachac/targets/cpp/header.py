@@ -20,7 +20,7 @@ from smachac.targets.cpp.builtin_states import LeafCode, built_in, enumeration
 from smachac.targets.cpp.containers import ContainerPlan, Lines, execute, parts, results
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import OWN, ContainerScope, Plan, member, place, scope_name
-from smachac.targets.cpp.records import script_structs
+from smachac.targets.cpp.records import key_types, script_structs
 from smachac.targets.cpp.step_containers import RESERVED, StepPlan, requests, states_members, step
 from smachac.targets.cpp.step_machine import machine_class, node_table
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value
@@ -72,14 +72,11 @@ def header_of(plan: Plan, *, with_records: bool = True) -> Header:
         return Header("", (), ())
     codes = list(printing.classes.values())
     runtime = "smachac/step.hpp" if plan.dialect.stepped else "smachac/smachac.hpp"
-    records = script_structs(plan.names, plan.bounds) if with_records else []
-    own = {record.own for record in (*plan.names.project, *plan.names.script)} - {None}
-    headers = sorted({
-        runtime,
-        *([plan.names.header] if plan.names.project else []),
-        *(code.header for code in codes),
-        *(class_.header for class_ in (*own, *plan.names.classes.values()) if class_ is not None),
-    })  # fmt: skip
+    types = [type_ for scope in plan.scopes.values() for type_ in scope.keys.values()]
+    types += [type_ for code in codes for type_ in key_types(code.type)]
+    records = script_structs(plan.names, plan.bounds, types) if with_records else []
+    included = [runtime, *(code.header for code in codes), *plan.names.headers(types)]
+    headers = sorted({*included, *([plan.names.header] if plan.names.project else [])})
     classes = tuple(header for header in headers if not header.startswith("smachac/"))
     made = f"// {made_by(plan.machine)}\n#pragma once"
     includes = "\n".join(f'#include "{header}"' for header in headers)

@@ -39,8 +39,8 @@ class NamedRecord(NamedTuple):
 class RecordNames:
     """The records that have names: those of the project file, and those of the script alone, whose
     structs are in the namespace `inner`. `classes` are classes of the user for types of messages,
-    `opaque` types whose values are a `std::any`.
-    `stepped`: texts and lists in them have bounds."""
+    `opaque` types whose values are a `std::any`. `stepped`: texts and lists in records have bounds.
+    """
 
     project: tuple[NamedRecord, ...] = ()
     script: tuple[NamedRecord, ...] = ()
@@ -80,29 +80,19 @@ class RecordNames:
             return Type(type_.name, (*args,))
         return Type("struct", (self.class_of(type_), *args))
 
-    def headers(self, type_: StateType) -> list[str]:
-        """The headers with the classes in a state type with structs, sorted."""
+    def headers(self, types: Iterable[Type]) -> list[str]:
+        """The headers with the classes in types with structs, sorted."""
         own = {f"::{own.name}": own.header for _, _, own in self.project if own is not None}
         own |= {f"::{class_.name}": class_.header for class_ in self.classes.values()}
-
-        def classes(type_: Type) -> Iterator[str]:
-            if type_.name in ("struct", "class"):
-                yield str(type_.args[0])
-            for arg in type_.args:
-                if isinstance(arg, Type):
-                    yield from classes(arg)
-
-        types = [key.type for key in (*type_.input_keys, *type_.output_keys)]
-        types += [variable.type for variable in type_.variables.values()]
-        return sorted(
-            {own.get(name, self.header) for own_type in types for name in classes(own_type)}
-        )
+        script = {self.class_of(type_) for _, type_, class_ in self.script if class_ is None}
+        own |= {f"::{own.name}": own.header for _, _, own in self.script if own is not None}
+        used = {name for type_ in types for name in _classes(type_)} - script
+        return sorted({own.get(name, self.header) for name in used})
 
     def state_type(self, type_: StateType) -> StateType:
         """A state type with structs in place of records. Raises UnportableError."""
-        names = replace(
-            self, script=(), inner=""
-        )  # a header of the user includes those of a project
+        # A header of the user can include the types of the project, but not those of a script.
+        names = replace(self, script=(), inner="")
 
         def keys(keys: Iterable[Key]) -> tuple[Key, ...]:
             return tuple(replace(key, type=names.with_structs(key.type)) for key in keys)
@@ -118,6 +108,21 @@ class RecordNames:
         )
 
 
+def key_types(type_: StateType) -> list[Type]:
+    """The types of the keys and variables of a state type."""
+    found = [key.type for key in (*type_.input_keys, *type_.output_keys)]
+    return [*found, *(variable.type for variable in type_.variables.values())]
+
+
+def _classes(type_: Type) -> Iterator[str]:
+    """The classes of the structs and of the messages in a type."""
+    if type_.name in ("struct", "class"):
+        yield str(type_.args[0])
+    for arg in type_.args:
+        if isinstance(arg, Type):
+            yield from _classes(arg)
+
+
 def project_names(library: Library, *, stepped: bool = False) -> RecordNames:
     """The names of records in the project file: those of the interfaces of all machines."""
     classes = library.cpp_types
@@ -130,7 +135,8 @@ def project_names(library: Library, *, stepped: bool = False) -> RecordNames:
 
 def record_names(machine: Machine, library: Library, *, stepped: bool = False) -> RecordNames:
     """The names of records for a machine."""
-    own = ((name, text) for name, text in machine.aliases.items() if name not in library.types)
+    outer = library.types
+    own = ((name, text) for name, text in machine.aliases.items() if outer.get(name) != text)
     return replace(
         project_names(library, stepped=stepped),
         script=_named(own, library.cpp_types),
@@ -162,19 +168,12 @@ def _named(
 
 def project_header(names: RecordNames, bounds: Bounds | None, made_by: str) -> str:
     """The header with the structs for the types of the project file."""
-    blocks = project_structs(names, bounds)
     runtime = "smachac/step_values.hpp" if names.stepped else "smachac/values.hpp"
-    includes = [runtime, *sorted({own.header for _, _, own in names.project if own is not None})]
-    return (
-        "\n\n".join(
-            [
-                f"// {made_by}\n#pragma once",
-                "\n".join(f'#include "{file}"' for file in includes),
-                *blocks,
-            ]
-        )
-        + "\n"
-    )
+    types = [type_ for _, type_ in _stored(names, names.project, bounds)]
+    headers = [runtime, *(header for header in names.headers(types) if header != names.header)]
+    included = "\n".join(f'#include "{header}"' for header in headers)
+    blocks = project_structs(names, bounds)
+    return "\n\n".join([f"// {made_by}\n#pragma once", included, *blocks]) + "\n"
 
 
 def project_structs(names: RecordNames, bounds: Bounds | None) -> list[str]:
@@ -183,26 +182,40 @@ def project_structs(names: RecordNames, bounds: Bounds | None) -> list[str]:
     return [*_structs(names, names.project, names.outer, bounds)]
 
 
-def script_structs(names: RecordNames, bounds: Bounds | None) -> list[str]:
-    """The structs for the types of the script alone, and what smachac has to know of the classes of
-    the user for types of messages."""
+def script_structs(
+    names: RecordNames, bounds: Bounds | None, types: Iterable[Type] = ()
+) -> list[str]:
+    """The structs for the types of the script alone. Classes of the user for messages in `types`
+    get a mark: smachac does not know their members."""
+    used = {name for type_ in types for name in _classes(type_)}
     opaque = [
-        _once([f"template <> struct smachac::Opaque<::{class_.name}> : std::true_type {{}};"])
-        for class_ in {class_.name: class_ for class_ in names.classes.values()}.values()
+        _once([f"template <> struct smachac::Opaque<{class_}> : std::true_type {{}};"])
+        for class_ in sorted({f"::{class_.name}" for class_ in names.classes.values()} & used)
     ]
     return [*opaque, *_structs(names, names.script, names.inner, bounds)]
+
+
+def _stored(
+    names: RecordNames, records: Iterable[NamedRecord], bounds: Bounds | None
+) -> Iterator[tuple[NamedRecord, Type]]:
+    """The records that C++ can have, with the types of their structs."""
+    for record in records:
+        try:
+            type_ = names.with_structs(record.type)
+            stored = plain(type_) if bounds is None else bounded(type_, bounds)
+            cpp_fields = [cpp_type(part) for part in fields_of(stored).values()]
+        except UnportableError:
+            continue
+        if cpp_fields:
+            yield record, stored
 
 
 def _structs(
     names: RecordNames, records: Iterable[NamedRecord], space: str, bounds: Bounds | None
 ) -> Iterator[str]:
-    for record in records:
-        try:
-            type_ = names.with_structs(record.type)
-            stored = plain(type_) if bounds is None else bounded(type_, bounds)
-            fields = {name: cpp_type(part) for name, part in fields_of(stored).items()}
-        except UnportableError:
-            continue
+    """The structs of records, and what smachac has to know of their members."""
+    for record, stored in _stored(names, records, bounds):
+        fields = {name: cpp_type(part) for name, part in fields_of(stored).items()}
         if record.own is None:
             yield _struct(identifier(record.name), fields, space)
         else:

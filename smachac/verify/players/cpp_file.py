@@ -25,7 +25,7 @@ from smachac.runtime.tracing.writer import with_shown_paths
 from smachac.targets.cpp.builtin_states import built_in, enumeration
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import ContainerScope, Plan, member, place, plan, scope_name
-from smachac.targets.cpp.records import record_names
+from smachac.targets.cpp.records import key_types, record_names
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_value, plain, script_data
 from smachac.targets.cpp.user_classes import (
     ClassCode,
@@ -329,7 +329,9 @@ class _Header:
             path.parent.mkdir(parents=True, exist_ok=True)
             text = [line for stand_ins in classes.values() for line in _class(stand_ins)]
             types = (code.type for ins in classes.values() if (code := ins[0].code) is not None)
-            own = sorted({header for type_ in types for header in self._names.headers(type_)})
+            own = self._names.headers(
+                text_type for type_ in types for text_type in key_types(type_)
+            )
             included = (f'#include "{file}"' for file in ("smachac/smachac.hpp", *own))
             lines = ["#pragma once", *included, *text]
             path.write_text("\n".join(lines) + "\n", "utf-8")
