@@ -161,21 +161,9 @@ def _state(name: str, arguments: Namespace) -> int:
     from smachac.frontend.types.state_types import find_state_type
 
     language: str = arguments.target
-    stepped = False
-    if arguments.option:
-        from smachac.targets import OptionError
-        from smachac.targets.cpp import TARGET
-        from smachac.targets.cpp.project import project
-
-        options = target_options(arguments.option, TARGET)
-        if isinstance(options, int):
-            return options
-        if language != "cpp":
-            return usage("--option is for `--target cpp`")
-        try:
-            stepped = project(options).bounds is not None
-        except OptionError as error:
-            return usage(f"--option {error}")
+    stepped = _is_stepped(arguments)
+    if not isinstance(stepped, bool):
+        return stepped
     if not is_type_name(name):
         return usage(f"`{name}` is not a name for a state type: write it as `GraspPart`")
     folder = Path()
@@ -219,6 +207,25 @@ def _state(name: str, arguments: Namespace) -> int:
     if code == OK and there is not None and language not in (*type_.code, *type_.classes):
         print(f"add to the `code` of {there.name}: {code_line(name, language)}")
     return code
+
+
+def _is_stepped(arguments: Namespace) -> bool | int:
+    """Whether the code is for a stepped machine; the exit code after an error of usage."""
+    if not arguments.option:
+        return False
+    from smachac.targets import OptionError
+    from smachac.targets.cpp import TARGET
+    from smachac.targets.cpp.project import project
+
+    options = target_options(arguments.option, TARGET)
+    if isinstance(options, int):
+        return options
+    if arguments.target != "cpp":
+        return usage("--option is for `--target cpp`")
+    try:
+        return project(options).bounds is not None
+    except OptionError as error:
+        return usage(f"--option {error}")
 
 
 def _with(library: Library, name: str, text: str) -> Library:

@@ -10,7 +10,7 @@ from smachac.checks.type_words import named
 from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.frontend.loader import Library
 from smachac.frontend.types.type_names import Aliases, filled
-from smachac.ir.nodes import Key, StateType
+from smachac.ir.nodes import StateType
 from smachac.ir.types import WORDS, Type, parse_type, unknown_words
 from smachac.records import dataclass
 from smachac.report.terminal import on_one_line
@@ -104,7 +104,16 @@ def stub(type_: StateType, language: str, library: Library, *, stepped: bool = F
     """Code that fits an interface and does nothing yet; in C++ for a stepped machine if `stepped`.
     Raises UnportableError."""
     if language == "cpp":
-        return _cpp_stub(type_, library, stepped=stepped)
+        from smachac.targets.cpp.class_stub import class_stub
+
+        return class_stub(
+            type_,
+            _outcomes(type_),
+            library,
+            namespace=HEADERS,
+            comment=_summary(type_),
+            stepped=stepped,
+        )
     return _python_stub(type_, library.types)
 
 
@@ -162,108 +171,6 @@ def _access(key: str) -> str:
     """A key of the userdata in Python."""
     named = key.isidentifier() and not iskeyword(key)
     return f"userdata.{key}" if named else f"userdata[{key!r}]"
-
-
-def _cpp_stub(type_: StateType, library: Library, *, stepped: bool) -> str:
-    """A class for the target `cpp` (docs/cpp.md, docs/cpp_step.md). Raises UnportableError."""
-    from smachac.targets.cpp.identifiers import identifier
-    from smachac.targets.cpp.records import key_types, project_names
-    from smachac.targets.cpp.types import cpp_type
-    from smachac.targets.cpp.user_classes import (
-        field_type,
-        interface_hash,
-        parameter_type,
-        step_fields,
-        step_parameter_type,
-        stops,
-    )
-
-    names = project_names(library, stepped=stepped)
-    type_ = names.state_type(type_)
-    runtime = "smachac/step.hpp" if stepped else "smachac/smachac.hpp"
-    headers = sorted({runtime, *names.headers(key_types(type_))})
-
-    def fields(part: str, keys: Sequence[Key]) -> dict[str, str]:
-        """The fields of `In` or `Out` with their types."""
-        if stepped:
-            return step_fields(part, keys, library.bounds)
-        return {identifier(key.name): field_type(part, key.type) for key in keys}
-
-    outcomes = [*map(identifier, _outcomes(type_))]
-    taken = {
-        identifier(name): step_parameter_type(variable.type, library.bounds)
-        if stepped
-        else parameter_type(variable.type)
-        for name, variable in type_.variables.items()
-    }
-    given = [
-        *(["smachac::step::Context &context"] if stepped else []),
-        *(["In in"] if type_.input_keys else []),
-        *(["Out out"] if type_.output_keys else []),
-        *(["smachac::Stop &stop"] if stops(type_) and not stepped else []),
-    ]
-    lines = [
-        f"// {_summary(type_)}",
-        "#pragma once",
-        "",
-        "#include <cstdint>",
-        "",
-        *(f'#include "{header}"' for header in headers),
-        "",
-        f"namespace {HEADERS} {{",
-        "",
-        f"class {type_.name} {{",
-        "public:",
-        f"  enum class Outcome {{ {', '.join(outcomes)} }};",
-    ]
-    for part, keys in (("In", type_.input_keys), ("Out", type_.output_keys)):
-        found = "; ".join(_declared(text, name) for name, text in fields(part, keys).items())
-        lines += [f"  struct {part} {{ {found}; }};"] if found else []
-    lines += [
-        "  // The number of the interface: when the interface changes, this no longer compiles.",
-        f"  static constexpr std::uint32_t smachac_interface = {interface_hash(type_)};",
-        "",
-    ]
-    members: list[str] = []
-    if taken:
-        parameters = ", ".join(_declared(text, name) for name, text in taken.items())
-        explicit = "explicit " if len(taken) == 1 else ""
-        if stepped:  # the class decides what it keeps, and with which bounds
-            unused = "".join(f" (void){name};" for name in taken)
-            lines += [f"  {explicit}{type_.name}({parameters}) {{{unused} }}", ""]
-        else:
-            kept = ", ".join(f"{name}_({name})" for name in taken)
-            lines += [f"  {explicit}{type_.name}({parameters}) : {kept} {{}}", ""]
-            members = [
-                f"  {cpp_type(variable.type)} {identifier(name)}_;"
-                for name, variable in type_.variables.items()
-            ]
-    unused_ = [f"    (void){text.split()[-1].strip('&')};" for text in given if "out" not in text]
-    sets = [
-        f"    // out.{identifier(key.name)} = ...;"
-        if stepped
-        else f"    out.{identifier(key.name)} = {cpp_type(key.type)}{{}};"
-        for key in type_.output_keys
-    ]
-    call = "smachac::step::Result<Outcome> step" if stepped else "Outcome execute"
-    lines += [
-        f"  {call}({', '.join(given)}) {{",
-        *unused_,
-        *(["    (void)out;"] if stepped and sets else []),
-        *sets,
-        f"    return Outcome::{outcomes[0]};",
-        "  }",
-        *(["", "private:", *members] if members else []),
-        "};",
-        "",
-        f"}}  // namespace {HEADERS}",
-    ]
-    return "\n".join(lines) + "\n"
-
-
-def _declared(type_: str, name: str) -> str:
-    """The declaration of a name."""
-    return f"{type_}{name}" if type_.endswith("&") else f"{type_} {name}"
 
 
 # --- a project

@@ -131,14 +131,7 @@ def read_project(
     cpp_types: Mapping[str, CppClass] = {}
     given = settings
     settings = _with_meant_settings(settings)
-    for key in given:
-        if key == "tool" and path.name == "smachac.toml" and _tool(data) is not None:
-            message = "`[tool.smachac]` is for pyproject.toml; all of smachac.toml is for smachac"
-            help = "write its settings without a table, and `[severity]` for the severities"
-            _wrong(source, key, message, help, report, ("setting", key))
-        elif key not in SETTINGS:
-            message = f"`{key}` is not a setting of smachac"
-            _wrong(source, key, message, _near(key, SETTINGS), report, ("setting", key))
+    _report_unknown(source, path, data, given, report)
     for key, value in settings.items():
         if key not in SETTINGS:
             continue
@@ -175,6 +168,20 @@ def read_project(
         readable=all(isinstance(settings.get(key, []), list) for key in FOLDERS)
         and not any(isinstance(settings[key], list) for key in settings.keys() - SETTINGS.keys()),
     )
+
+
+def _report_unknown(
+    source: Source, path: Path, data: dict[str, Any], given: Iterable[str], report: Report
+) -> None:
+    """Report settings that do not exist."""
+    for key in given:
+        if key == "tool" and path.name == "smachac.toml" and _tool(data) is not None:
+            message = "`[tool.smachac]` is for pyproject.toml; all of smachac.toml is for smachac"
+            help = "write its settings without a table, and `[severity]` for the severities"
+            _wrong(source, key, message, help, report, ("setting", key))
+        elif key not in SETTINGS:
+            message = f"`{key}` is not a setting of smachac"
+            _wrong(source, key, message, _near(key, SETTINGS), report, ("setting", key))
 
 
 def _with_meant_settings(settings: Mapping[str, Any]) -> dict[str, Any]:

@@ -116,12 +116,10 @@ def _read_interface(
     unclear = tree.get("io_keys") is not None  # reported; which keys are inputs is not known
     if "name" in fields:
         _check_own_name(fields["name"], name, report)
-    sections = {key: _section(key, fields.get(key), report) for key in _SECTIONS}
+    sections = _sections(fields, library, report)
     code = code_by_language(sections["code"], report)
     if "python" not in code and library.template(f"{name}.tpl.py") is not None:
         code["python"] = f"{name}.tpl.py"
-    for part in ("variables", "input_keys", "output_keys"):
-        sections[part] = with_types(sections[part], library.types)
     parts = ("variables", "input_keys", "output_keys", "outcomes")
     given = frozenset(part for part in parts if _is_starred(sections[part]))
     optional = _optional_outcomes(sections["outcomes"])
@@ -171,6 +169,15 @@ def _read_interface(
         optional=optional,
         secret_keys=_secret_keys(sections, report),
     )
+
+
+def _sections(fields: Mapping[str, Tree], library: Library, report: Report) -> dict[str, Section]:
+    """The fields that are mappings of names, with the types of the project file in place of their
+    names."""
+    found = {key: _section(key, fields.get(key), report) for key in _SECTIONS}
+    for part in ("variables", "input_keys", "output_keys"):
+        found[part] = with_types(found[part], library.types)
+    return found
 
 
 def _outcomes(section: Section, report: Report) -> tuple[Outcome, ...]:
