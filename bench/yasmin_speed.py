@@ -25,7 +25,8 @@ from smachac.driver import analyse, build
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
 from smachac.targets.yasmin import TARGET
-from tests.yasmin import programs, stand_in
+from tests.yasmin import stand_in
+from tests.yasmin.programs import loaded
 
 LEFT = [0]
 """The number of calls of `Call` that are left."""
@@ -130,9 +131,8 @@ def hand_written(yasmin: Any) -> Callable[[], str]:
 
 
 def measure(name: str, yasmin: Any, count: int) -> None:
-    programs.stand_in = yasmin
     least = [float("inf")] * 2
-    with programs.loaded(files()) as module, contextlib.redirect_stdout(io.StringIO()):
+    with loaded(files(), yasmin) as module, contextlib.redirect_stdout(io.StringIO()):
         runs = (module.run().execute, hand_written(yasmin))
         for _ in range(5):
             for at, run in enumerate(runs):

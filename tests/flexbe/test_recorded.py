@@ -32,13 +32,13 @@ def played(machine: Machine, case: Any) -> list[Any] | None:
     events: list[Any] = []
     with loaded(files) as made:
         behavior = ready(made)
-        machine = behavior._state_machine
+        engine = behavior._state_machine
         for key, value in case.get("userdata", {}).items():
-            machine.userdata[key] = copy.deepcopy(value)
-        PERFORMED.update(events=events, request=machine.request_preempt)
-        machine.observe(events.append)
+            engine.userdata[key] = copy.deepcopy(value)
+        PERFORMED.update(events=events, request=engine.request_preempt)
+        engine.observe(events.append)
         if case.get("preempt_before"):
-            machine.request_preempt()
+            engine.request_preempt()
         with contextlib.suppress(Exception):
             behavior.execute()
     return events

@@ -31,13 +31,14 @@ def files_of(machine: Machine, library: Library) -> dict[str, str] | None:
 
 
 @contextmanager
-def loaded(files: dict[str, str]) -> Iterator[Any]:
-    """The module for YASMIN, with those that it imports."""
+def loaded(files: dict[str, str], yasmin: Any = None) -> Iterator[Any]:
+    """The module for YASMIN, with those that it imports; `yasmin` takes the place of the
+    stand-in."""
     names = [*files]
     texts = {name.removesuffix(".py"): files[name] for name in reversed(names)}
     texts = {"smachac_yasmin": RUNTIME.read_text("utf-8"), **texts}
     before = {name: sys.modules.get(name) for name in ("yasmin", *texts)}
-    sys.modules["yasmin"] = stand_in
+    sys.modules["yasmin"] = yasmin or stand_in
     try:
         for name, text in texts.items():
             module = sys.modules[name] = ModuleType(name)
