@@ -562,3 +562,24 @@ states:
     files, report = files_of(text)
     assert files == {}
     assert [(finding.code, finding.span.line) for finding in report] == [("SM601", 7)]
+
+
+@pytest.mark.parametrize(
+    ("name", "package", "class_"),
+    [
+        ("2 go", "go", "Behavior2GoSM"),
+        ("Größe", "gr__e", "GrESM"),
+        ("Arm-1", "arm_1", "Arm1SM"),
+        ("42", "machine", "Behavior42SM"),
+        ("flexbe_core", "flexbe_core", "FlexbeCoreSM"),
+    ],
+)
+def test_names_of_machines(name: str, package: str, class_: str) -> None:
+    files, report = files_of(WAITING.replace("name: wait", f"name: '{name}'"))
+    assert report == []
+    assert next(iter(files)).startswith(f"{package}_flexbe_behaviors/")
+    with loaded(files) as made:
+        assert made.__name__ == class_
+        run = ready(made)
+        at_visit(run._state_machine, f"{name}/BOTH/SLEEP", by_flag)
+        assert run.execute() == "preempted"

@@ -152,9 +152,10 @@ class EventState(_Node, flexbe_core.EventState):
 
     work = None
 
-    def __init__(self, outcomes, input_keys=(), output_keys=()):
-        keys = {"input_keys": list(input_keys), "output_keys": list(output_keys)}
-        flexbe_core.EventState.__init__(self, outcomes=list(outcomes), **keys)
+    def __init__(self, outcomes, input_keys=None, output_keys=None):
+        # The App reads these arguments, which it gives as text where a class passes its own on.
+        keys = {"input_keys": input_keys or [], "output_keys": output_keys or []}
+        flexbe_core.EventState.__init__(self, outcomes=outcomes, **keys)
         self.visit = None
         # FlexBE's own base classes wrap `execute` in the same way.
         self._flexbe_execute, self.execute = self.execute, self._tick

@@ -7,6 +7,7 @@ of them, package.py the other files of the packages, and names.py has the names 
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Report, has_errors, in_order
@@ -75,7 +76,12 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
 
 
 def _package(machine: Machine, context: BuildContext) -> str:
-    return package_name(context.options.get("package", "true"), machine)
+    """The beginning of the names of both packages. Raises OptionError."""
+    value = context.options.get("package", "true")
+    if value != "true":
+        return package_name(value, machine)
+    word = re.sub(r"[^a-z0-9_]", "_", stem(machine).lower())
+    return word.lstrip("_0123456789") or "machine"
 
 
 def _runtime(machine: Checked, context: BuildContext) -> dict[str, str]:

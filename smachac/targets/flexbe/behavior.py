@@ -7,8 +7,7 @@ what they need beyond FlexBE's.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
-from itertools import chain
+from collections.abc import Callable, Iterator, Mapping
 from keyword import iskeyword
 
 from smachac.diagnostics.source import assert_never
@@ -45,6 +44,10 @@ OWN = {
 """Attributes of FlexBE's class `Behavior`, which no parameter may have as its name."""
 
 
+Edges = Callable[[Node], Iterator[tuple[str, str]]]
+"""The transitions of a state: outcomes and targets."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Behavior:
     """What the behavior of a machine is made of.
@@ -66,7 +69,8 @@ class Behavior:
 def class_name(machine: Machine) -> str:
     """The name of the class, as the App makes it."""
     words = re.sub(r"[^A-Za-z0-9]+", " ", stem(machine)).split() or ["machine"]
-    return "".join(word[0].upper() + word[1:] for word in words) + "SM"
+    name = "".join(word[0].upper() + word[1:] for word in words) + "SM"
+    return f"Behavior{name}" if name[0].isdigit() else name
 
 
 def attribute(parameter: RosParameter) -> str:
@@ -228,10 +232,11 @@ def _added(
     first = node.initial if isinstance(node, nodes.StateMachine | nodes.Sequence) else ""
     ordered = sorted(node.children, key=lambda child: child.name != first)
     space = " " * len("OperatableStateMachine.add(")
+    edges_of = _edges(path, node, behavior.names)
     for at, child in enumerate(ordered):
         where = f"{path}/{child.name}"
         state = variables[where] if where in variables else _constructed(child, where, behavior)
-        edges = dict(_edges(path, node, child, behavior.names))
+        edges = dict(edges_of(child))
         level = "Autonomy.Inherit" if where in variables else "Autonomy.Off"
         arguments = [
             f"OperatableStateMachine.add({labels[where]!r}",
@@ -261,39 +266,60 @@ def _constructed(child: Node, where: str, behavior: Behavior) -> str:
     return f"{known.name}({', '.join(f'{name}={_list(words)}' for name, words in values)})"
 
 
-def _edges(path: str, node: Container, child: Node, labels: Names) -> Iterator[tuple[str, str]]:
-    """The transitions of a state. Those of a branch and of a repeated state show where its outcomes
-    lead mostly: the container decides."""
-    is_root = "/" not in path
-    own = own_outcomes(node, is_root=is_root)
+def _edges(path: str, node: Container, labels: Names) -> Edges:
+    """A function that makes the transitions of a state in a container."""
+    own = own_outcomes(node, is_root="/" not in path)
     match node:
         case Concurrence():
-            rules = [*by_priority(node)]
-            for name in own_outcomes(child):
-                mentioned = (
-                    outcome(rule.outcome)
-                    for rule in rules
-                    for one in rule.when
-                    if one.child == child.name and outcome(one.outcome) == name
-                )
-                default = (outcome(node.default_outcome),) if node.default_outcome else ()
-                yield name, next(chain(mentioned, default, own))
+            edges = _branch_edges(node, own)
         case nodes.Iterator():
-            label, final = labels.labels[f"{path}/{child.name}"], dict(node.final_map)
-            again = {outcome(name) for name in node.loop_outcomes}
-            written = {outcome(name): outcome(to) for name, to in final.items()}
-            for name in own_outcomes(child):
-                to = written.get(name, name)
-                yield name, to if name not in again and to in own else label
+            edges = _item_edges(node, own, labels.labels[f"{path}/{node.children[0].name}"])
         case nodes.StateMachine() | nodes.Sequence():
-            states = frozenset(state.name for state in node.children)
-            for edge in child.transitions:
-                target = edge.target if is_root else outcome(edge.target)
-                if leads_to_child(edge, states):
-                    target = labels.labels[f"{path}/{edge.target}"]
-                yield outcome(edge.outcome), target
+            edges = _state_edges(path, node, labels)
         case _:
             assert_never(node)
+    return edges
+
+
+def _branch_edges(node: Concurrence, own: tuple[str, ...]) -> Edges:
+    """The transitions of a branch. The container decides: they show the first condition for it."""
+    decided: dict[tuple[str, str], str] = {}
+    for rule in by_priority(node):
+        for one in rule.when:
+            decided.setdefault((one.child, outcome(one.outcome)), outcome(rule.outcome))
+    default = outcome(node.default_outcome) if node.default_outcome else own[0]
+
+    def edges(child: Node) -> Iterator[tuple[str, str]]:
+        for name in own_outcomes(child):
+            yield name, decided.get((child.name, name), default)
+
+    return edges
+
+
+def _item_edges(node: nodes.Iterator, own: tuple[str, ...], label: str) -> Edges:
+    """The transitions of the state that is repeated: to itself, or to the end of the loop."""
+    again = {outcome(name) for name in node.loop_outcomes}
+    renamed = {outcome(name): outcome(to) for name, to in node.final_map}
+
+    def edges(child: Node) -> Iterator[tuple[str, str]]:
+        for name in own_outcomes(child):
+            to = renamed.get(name, name)
+            yield name, to if name not in again and to in own else label
+
+    return edges
+
+
+def _state_edges(path: str, node: nodes.StateMachine | nodes.Sequence, labels: Names) -> Edges:
+    states = frozenset(state.name for state in node.children)
+
+    def edges(child: Node) -> Iterator[tuple[str, str]]:
+        for edge in child.transitions:
+            target = outcome(edge.target) if "/" in path else edge.target
+            if leads_to_child(edge, states):
+                target = labels.labels[f"{path}/{edge.target}"]
+            yield outcome(edge.outcome), target
+
+    return edges
 
 
 def _set_up(machine: Machine, behavior: Behavior) -> Doc:

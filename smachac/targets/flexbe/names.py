@@ -52,11 +52,11 @@ def names_of(machine: Machine) -> Names:
     labels: dict[str, str] = {}
     paths = {root: ""}
     for path, node in containers(machine.root):
-        taken = {*own_outcomes(node, is_root=path == root), "preempted"}
-        taken |= {child.name for child in node.children}
+        outcomes = frozenset(own_outcomes(node, is_root=path == root))
+        taken = {*outcomes, *(child.name for child in node.children)}
         for child in node.children:
             where, label = f"{path}/{child.name}", child.name
-            if label in own_outcomes(node, is_root=path == root):
+            if label in outcomes:
                 while label in taken:
                     label += " (state)"
                 taken.add(label)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from keyword import iskeyword
 
-from smachac.ir.nodes import Leaf, Machine
+from smachac.ir.nodes import Key, Leaf, Machine
 from smachac.ir.traversal import walk
 from smachac.records import dataclass
 from smachac.targets import comment, made_by
@@ -33,6 +33,7 @@ class StateClass:
     module: str
     type: str
     interface: Interface | None
+    key_types: tuple[tuple[str, str], ...]
 
 
 def interface_of(leaf: Leaf) -> Interface:
@@ -60,6 +61,7 @@ def state_classes(machine: Machine) -> Mapping[str, StateClass]:
             module=_module_name(name),
             type=leaf.type,
             interface=interface if len(found) == 1 else None,
+            key_types=tuple((key.name, _type_word(key)) for key in (*leaf.inputs, *leaf.outputs)),
         )
     return {path: made[leaf.type] for path, leaf in leaves.items()}
 
@@ -96,7 +98,7 @@ def state_text(machine: Machine, state: StateClass, package: str) -> str:
         interface = [f"outcomes={[*outcomes]!r}"]
         interface += [f"input_keys={[*inputs]!r}"] if inputs else []
         interface += [f"output_keys={[*outputs]!r}"] if outputs else []
-        types = _key_types(machine, state.type)
+        types = dict(state.key_types)
         lines = [f">#  {key}  {types[key]}  An input." for key in inputs]
         lines += [f"#>  {key}  {types[key]}  An output." for key in outputs]
         lines += [f"<=  {name}  An outcome." for name in outcomes]
@@ -119,12 +121,6 @@ class {state.name}(EventState):
 """
 
 
-def _key_types(machine: Machine, type_: str) -> Mapping[str, str]:
-    """The type of each key, as one word."""
-    leaf = next(
-        node for _, node in walk(machine.root) if isinstance(node, Leaf) and node.type == type_
-    )
-    return {
-        key.name: re.sub(r"\s+", "", str(key.type)) or "object"
-        for key in (*leaf.inputs, *leaf.outputs)
-    }
+def _type_word(key: Key) -> str:
+    """The type of a key as one word."""
+    return re.sub(r"\s+", "", str(key.type)) or "object"
