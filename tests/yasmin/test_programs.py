@@ -9,6 +9,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -136,14 +137,18 @@ def test_a_request_between_the_last_state_and_the_end_is_not_lost() -> None:
     """YASMIN has no current state then: the machine around gets the request."""
     files, _ = files_of(AROUND)
     with loaded(files) as module:
-        run = module.run()
-        inside = run.machine.children["IN"]
+        runs: list[Any] = []
+        machine = sys.modules["smachac_yasmin"].Machine
+        end = machine._end
 
-        def end(blackboard: object, outcome: str) -> None:
-            run.request_preempt()
+        def asking(self: Any, blackboard: object, outcome: str) -> None:
+            if self.path == "sm/IN":
+                runs[0].request_preempt()
+            end(self, blackboard, outcome)
 
-        inside._callbacks["end"].insert(0, end)
-        assert run.execute() == "preempted"
+        machine._end = asking
+        runs.append(module.run())
+        assert runs[0].execute() == "preempted"
 
 
 AROUND = """\
