@@ -208,19 +208,26 @@ def test_a_preempt_reaches_a_paused_state() -> None:
         assert stand_in.PriorityContainer.active_container is None
 
 
-def test_an_operator_repeats_a_state_by_its_transition() -> None:
-    """The next visit of a state waits for the work that an operator has left."""
+@pytest.mark.parametrize("answers", [True, False])
+def test_an_operator_leaves_a_state_and_comes_back(
+    monkeypatch: pytest.MonkeyPatch, answers: bool
+) -> None:
+    """The next visit waits for the work that was left; the request to stop was for that alone."""
+    if not answers:
+        monkeypatch.setattr(Work, "preempt_requested", lambda self: False)
     again = ONE.replace("left: left", "left: A")
     with behavior_of(again, CONTROLLED) as behavior:
         machine = behavior._state_machine
         entered: list[str] = []
         machine.observe(lambda event: entered.append(event["event"]))
         assert machine.execute(None) is None
+        Work.entered.wait()
         stand_in.TOPICS["transition"] = ("A", 1)
         assert machine.execute(None) is None
-        Work.go.set()
-        assert behavior.execute() in ("done", "preempted")
+        assert behavior.execute() == "done"
         assert entered.count("enter") == 2
+        (state,) = machine._states
+        assert smach.State.preempt_requested(state.work) is False
 
 
 def test_an_outcome_waits_for_its_level_of_autonomy() -> None:

@@ -193,6 +193,7 @@ class EventState(_Node, flexbe_core.EventState):
 
     def on_exit(self, userdata):
         if self.visit.is_running:  # the operator has chosen an outcome
+            self.visit.is_left = True
             self.request()
 
     def on_stop(self):
@@ -215,20 +216,22 @@ class EventState(_Node, flexbe_core.EventState):
 
 
 class _Visit(threading.Thread):
-    """One execution of the work of a state. It starts when the one before it has ended, which an
-    operator may have left."""
+    """One execution of the work of a state. It starts when the one before it has ended. If an
+    operator has left that, its request to stop is not for this one."""
 
     def __init__(self, state, before):
         super().__init__(name=state.where, daemon=True)
         self.state, self.before = state, before
         self.outcome = self.error = None
-        self.is_running = True
+        self.is_running, self.is_left = True, False
 
     def run(self):
-        state = self.state
-        if self.before is not None:
-            self.before.join()
+        state, before = self.state, self.before
         self.before = None
+        if before is not None:
+            before.join()
+            if before.is_left and not state.parent.requested:
+                state.serve()
         try:
             outcome = getattr(state.work, "attempted", state.work.execute)(Keys(state))
             if not isinstance(outcome, str):
