@@ -164,7 +164,8 @@ class EditedScript:
         if not wanted(after.machine):
             help = "write its fields out, or format the script: `smachac fmt`"
             raise RefusedError(span, "the text would become another machine than wanted", help)
-        self._follow(self.machine, after.machine)
+        if self.analysis.machine is not None:
+            self._follow(self.analysis.machine, after.machine)
         return after
 
     def results(self) -> dict[str, tuple[Source, str]]:
