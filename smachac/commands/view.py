@@ -11,7 +11,14 @@ import time
 from argparse import Namespace
 from contextlib import contextmanager, suppress
 
-from smachac.commands.arguments import SCRIPT, as_path, colour, machine_name, search_folders
+from smachac.commands.arguments import (
+    SCRIPT,
+    as_path,
+    colour,
+    generated_states,
+    machine_name,
+    search_folders,
+)
 from smachac.commands.output import OK, print_report, usage
 from smachac.commands.python_files import MachineError, is_python, one_analysis
 
@@ -82,9 +89,7 @@ def view_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--port", type=port, default=0, metavar="PORT",
                         help="the port of the page (default: one that is free)")  # fmt: skip
     browser(parser)
-    parser.add_argument("--generated", action="store_true",
-                        help="also show the states that `timeout`, `retry` and `for_each` add"
-                        )  # fmt: skip
+    generated_states(parser)
     machine_name(parser)
     search_folders(parser)
     colour(parser)
@@ -522,7 +527,7 @@ class RunView:
 @contextmanager
 def run_view(arguments: Namespace, machine: Machine, report: Report) -> Iterator[RunView]:
     """The view of a run with `--view`. Raises PortError."""
-    from smachac.ir.written import written
+    from smachac.ir.written import generated, written
     from smachac.view.control import Control
     from smachac.view.feed import Feed
     from smachac.view.live import LiveTrace
@@ -530,8 +535,9 @@ def run_view(arguments: Namespace, machine: Machine, report: Report) -> Iterator
 
     feed = Feed()
     trace = LiveTrace(feed)
-    control = Control(written(machine), trace.send, paused=arguments.view_paused)
-    picture = Picture(feed, machine.root.name)
+    states = generated if arguments.generated else written
+    control = Control(states(machine), trace.send, paused=arguments.view_paused)
+    picture = Picture(feed, machine.root.name, view=states)
     picture.update(machine, report)
     server = _server(arguments.view, picture, feed, control)
     trace.send(control.status())
