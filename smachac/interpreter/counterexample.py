@@ -115,13 +115,13 @@ def replay(machine: Machine, visits: Sequence[Visited], again: int = -1) -> Repl
     interpreter = Interpreter(machine, behave, events.append, max_steps=20 * len(rounds) + 10_000)
     interpreter.schedule = _Guided(rounds, done)
     result = interpreter.execute()
-    schedule = tuple(_short(choice) for choice in result.choices)
+    schedule = tuple(turn_name(choice) for choice in result.choices)
     scenario = Scenario(steps={path: tuple(row) for path, row in steps.items()})
     followed = all(right) and len(right) == len(rounds)
     return Replay(scenario, schedule, tuple(events), followed)
 
 
-def _short(choice: SchedulingChoice) -> str:
+def turn_name(choice: SchedulingChoice) -> str:
     """The name of the branch that continues, or its path if another branch has that name."""
     name = choice.taken.rpartition("/")[2]
     same = [path for path in choice.ready if path.endswith(f"/{name}")]

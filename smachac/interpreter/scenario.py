@@ -17,6 +17,7 @@ from smachac.diagnostics.wording import listed
 from smachac.interpreter.behaviours import preemptible
 from smachac.interpreter.result import Behaviour
 from smachac.interpreter.userdata import BehaviourError, Userdata
+from smachac.ir.durations import in_one_unit, seconds
 from smachac.ir.leaf import default_outcome
 from smachac.ir.nodes import Iterator, Leaf, Machine
 from smachac.ir.outcome_names import PREEMPTED
@@ -31,8 +32,9 @@ class ScenarioStep:
 
     Without an outcome the leaf ends with its default outcome. `stop`: the visit begins with a
     request to stop for the whole machine. `wait`: the leaf first waits for a request to stop.
-    `error`: the leaf raises an error with this message instead. `chances`: outcomes with their
-    probabilities, one of which is drawn at each visit and takes the place of `outcome`.
+    `after`: the time that the visit takes, in seconds. `error`: the leaf raises an error with this
+    message instead. `chances`: outcomes with their probabilities, one of which is drawn at each
+    visit and takes the place of `outcome`. `run`: the leaf behaves as without a step.
     """
 
     outcome: str | None = None
@@ -41,17 +43,24 @@ class ScenarioStep:
     wait: bool = False
     error: str = ""
     stop: bool = False
+    after: float = 0.0
+    run: bool = False
 
 
 STEP_FIELDS: Mapping[str, str] = {
     "outcome": "The outcome it ends with, or the probability of each of several outcomes; without"
     " one, its default outcome.",
     "set": "The userdata keys that it writes: {width: 0.05}.",
+    "after": "The time that it takes: 30 s.",
     "wait": "It first waits for a request to stop.",
     "error": "It raises an error with this message.",
     "stop": "The visit begins with a request to stop for the whole machine.",
+    "run": "It runs its own functions, or waits its own time, as a state without steps.",
 }
 """The fields of a step in a scenario file, with their descriptions."""
+
+OWN_CODE = ("run", "stop")
+"""The fields of a step that runs the code of its state."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,15 +96,29 @@ def scenario_behaviour(
                 sources[path] = random.Random(f"{seed}/{path}")
             outcomes, weights = zip(*step.chances, strict=True)
             step = replace(step, outcome=sources[path].choices(outcomes, weights)[0])
-        if step.stop:
-            userdata.stop_machine()
-        return perform_step(step, leaf, userdata)
+        return play_step(step, others, path, leaf, visit, userdata)
 
     return behave
 
 
+def play_step(
+    step: ScenarioStep,
+    otherwise: Behaviour,
+    path: str,
+    leaf: Leaf,
+    visit: int,
+    userdata: Userdata,
+) -> str:
+    """Perform one step of a leaf, or what it does `otherwise`; the outcome."""
+    if step.stop:
+        userdata.stop_machine()
+    if step.run:
+        return otherwise(path, leaf, visit, userdata)
+    return perform_step(step, leaf, userdata)
+
+
 def perform_step(step: ScenarioStep, leaf: Leaf, userdata: Userdata) -> str:
-    """Perform one step of a leaf, without its `stop`; the outcome."""
+    """Perform one step of a leaf, without its `stop` and `run`; the outcome."""
     able = PREEMPTED in outcome_names(leaf)
     if userdata.preempted and able:
         userdata.service_preempt()
@@ -104,6 +127,7 @@ def perform_step(step: ScenarioStep, leaf: Leaf, userdata: Userdata) -> str:
         userdata.wait_for_stop()
         if able:
             return PREEMPTED
+    userdata.sleep(step.after)
     if step.error:
         raise BehaviourError(step.error)
     for key, value in step.writes:
@@ -119,6 +143,8 @@ class PlainStep(NamedTuple):
     wait: bool
     error: str
     stop: bool
+    after: float = 0.0
+    run: bool = False
 
 
 def plain_steps_by_path(scenario: Scenario, machine: Machine) -> dict[str, list[PlainStep]]:
@@ -133,7 +159,15 @@ def plain_steps_by_path(scenario: Scenario, machine: Machine) -> dict[str, list[
         assert isinstance(leaf, Leaf)
         usual = default_outcome(leaf)
         rows[path] = [
-            PlainStep(step.outcome or usual, dict(step.writes), step.wait, step.error, step.stop)
+            PlainStep(
+                step.outcome or usual,
+                dict(step.writes),
+                step.wait,
+                step.error,
+                step.stop,
+                step.after,
+                step.run,
+            )
             for step in steps
         ]
     return rows
@@ -141,41 +175,46 @@ def plain_steps_by_path(scenario: Scenario, machine: Machine) -> dict[str, list[
 
 def scenario_text(rows: Mapping[str, Sequence[PlainStep]]) -> str:
     """A scenario as a file for `smachac run --mock`."""
-    lines = ["states:"]
+    lines = ["states:" if rows else "states: {}"]
     for path, row in rows.items():
         steps = [_short(_step(step)) for step in row]
         if len(steps) == 1:
-            lines.append(f"  {_flow(path)}: {steps[0]}")
+            lines.append(f"  {flow_text(path)}: {steps[0]}")
         else:
-            lines += [f"  {_flow(path)}:", *(f"    - {step}" for step in steps)]
+            lines += [f"  {flow_text(path)}:", *(f"    - {step}" for step in steps)]
     return "\n".join(lines) + "\n"
 
 
 def scenario_line(rows: Mapping[str, Sequence[PlainStep]]) -> str:
     """A scenario on one line, with steps that are only an outcome as short as possible."""
     states = {path: [_short(_step(step)) for step in row] for path, row in rows.items()}
-    parts = (f"{_flow(path)}: [{', '.join(steps)}]" for path, steps in states.items())
+    parts = (f"{flow_text(path)}: [{', '.join(steps)}]" for path, steps in states.items())
     return f"{{states: {{{', '.join(parts)}}}}}"
 
 
-def _flow(value: object) -> str:
+def flow_text(value: object) -> str:
     """A value as YAML on one line, with quotes only where they are needed."""
     match value:
         case dict():
-            return f"{{{', '.join(f'{_flow(key)}: {_flow(value[key])}' for key in value)}}}"
+            return f"{{{', '.join(f'{flow_text(key)}: {flow_text(value[key])}' for key in value)}}}"
         case list() | tuple():
-            return f"[{', '.join(map(_flow, value))}]"
+            return f"[{', '.join(map(flow_text, value))}]"
         case str() if is_plain(value):
             return value
+        case float() if not math.isfinite(value):
+            return ".nan" if math.isnan(value) else ".inf" if value > 0 else "-.inf"
     return quoted(value)
 
 
 def _short(step: dict[str, object]) -> str:
-    return _flow(step["outcome"] if [*step] == ["outcome"] else step)
+    return flow_text(step["outcome"] if [*step] == ["outcome"] else step)
 
 
 def _step(row: PlainStep) -> dict[str, object]:
     step: dict[str, object] = {"stop": True} if row.stop else {}
+    if row.run:
+        return step | {"run": True}
+    step |= {"after": in_one_unit(row.after)} if row.after else {}
     if row.error:
         return step | {"error": row.error}
     step |= {"wait": True} if row.wait else {}
@@ -220,6 +259,7 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[Scenar
       CHECK: succeeded
       TIMER: {wait: true}
       WALK: [succeeded, {outcome: preempted, stop: true}]
+      CHARGE: {outcome: full, after: 2 h}
       LIFT: {outcome: {succeeded: 0.7, aborted: 0.3}}
     ```
     """
@@ -301,9 +341,14 @@ class _StepReader:
             if not self.place.unrestricted and key not in declared:
                 help_ = _name_help(str(key), declared)
                 self.problem(number, f"`{key}` is not one of its output keys", help_)
-        for key in ("wait", "stop"):
+        for key in ("wait", "stop", "run"):
             if not isinstance(entry.get(key, False), bool):
                 self.problem(number, f"`{key}` is true or false")
+        after = seconds(entry.get("after", 0))
+        if after is None:
+            self.problem(number, "`after` is a time, such as `30 s`, `5 min` or `2 h`")
+        if entry.get("run") is True and (others := [key for key in entry if key not in OWN_CODE]):
+            self.problem(number, f"a step with `run` has no `{others[0]}`")
         given = entry.get("outcome")
         chances = self.chances(given, number) if isinstance(given, dict) else ()
         single = "outcome" in entry and not isinstance(given, dict)
@@ -314,6 +359,8 @@ class _StepReader:
             wait=entry.get("wait") is True,
             error=str(entry.get("error", "")),
             stop=entry.get("stop") is True,
+            after=after or 0.0,
+            run=entry.get("run") is True,
         )
 
     def outcome(self, given: object, number: int) -> str:

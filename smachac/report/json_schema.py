@@ -349,6 +349,8 @@ def scenario_schema() -> Schema:
         "outcome": {"anyOf": [outcome, chances]},
         "set": {"type": ["object", "null"]},
         "error": {},
+        "after": {"type": ["string", "number"]},
+        "run": {"type": "boolean", "default": False},
         "wait": {"type": "boolean", "default": False},
         "stop": {"type": "boolean", "default": False},
     }

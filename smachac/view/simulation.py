@@ -1,0 +1,410 @@
+"""Simulation in a view: a machine that stands before states, whose outcomes the user chooses."""
+
+from __future__ import annotations
+
+import gc
+import re
+import shlex
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from smachac.analysis.expression_types import type_of_data
+from smachac.analysis.type_lattice import misfit
+from smachac.diagnostics.source import Source
+from smachac.frontend.text.data_files import plain
+from smachac.frontend.text.yaml_tree import parse
+from smachac.interpreter.behaviours import builtin_behaviour, is_made_of_functions
+from smachac.interpreter.interpreter import run
+from smachac.interpreter.result import Event
+from smachac.interpreter.scenario import (
+    ScenarioStep,
+    flow_text,
+    plain_steps_by_path,
+    read_scenario,
+    scenario_behaviour,
+    scenario_text,
+)
+from smachac.interpreter.simulation import (
+    Choice,
+    Position,
+    chosen_scenario,
+    is_possible,
+    simulate,
+)
+from smachac.interpreter.userdata import LONGEST_WAIT
+from smachac.ir.durations import in_one_unit, seconds
+from smachac.ir.leaf import variable, variable_of
+from smachac.ir.nodes import Data, Leaf, Machine, Struct, is_number
+from smachac.ir.outcome_names import PREEMPTED, is_failure
+from smachac.ir.script_paths import script_paths
+from smachac.ir.traversal import outcome_names, walk
+from smachac.ir.types import Type
+from smachac.ir.written import Written, duration, written
+from smachac.runtime.tracing.writer import with_shown_paths
+from smachac.verify.sample_values import SampleValues, sample_value
+from smachac.view.feed import Feed
+from smachac.view.server import ActionError
+
+MOST_CHOICES = 2_000
+"""The most choices of a simulation."""
+
+Save = Callable[[str, Callable[[str], str]], str]
+"""Writes a text to the file of a scenario, by the name of the file and the function that makes the
+text from its path, unless it exists with another text; the path. Raises ActionError."""
+
+_NAME = re.compile(r"\w[\w.-]{0,99}")
+
+ADDED = ("timer", "pause")
+"""The roles of leaves that fields of the script add."""
+
+ERROR = "an error of the simulation"
+"""The message of an exception that the user chooses without one."""
+
+
+class _Simulated:
+    """What is known of a machine: its written states, its leaves, the types of its keys.
+
+    `limits` are the timers and pauses, which need no choice, with their states.
+    """
+
+    def __init__(self, machine: Machine, view: Written) -> None:
+        self.machine, self.view = machine, view
+        self.leaves = {path: node for path, node in walk(machine.root) if isinstance(node, Leaf)}
+        added = [part for part in written(machine).parts.values() if part.role in ADDED]
+        self.limits = {part.full: part.state for part in added}
+        self.shown = script_paths(machine.root)
+        self.samples = SampleValues(machine)
+
+    def position(self, choices: Sequence[Choice]) -> Position:
+        return simulate(self.machine, choices, self.limits)
+
+
+class Simulation:
+    """The simulation of the script of a view, which all its pages show.
+
+    `script` is the script as commands name it. The choices are kept as steps of leaves: a machine
+    that takes the place of another one is simulated as far as they fit.
+    """
+
+    def __init__(
+        self,
+        feed: Feed,
+        script: str,
+        save: Save,
+        view: Callable[[Machine], Written] = written,
+    ) -> None:
+        self._feed, self._script, self._save, self._view = feed, script, save, view
+        self._lock = threading.Lock()
+        self._machine: Machine | None = None
+        self._simulated: _Simulated | None = None
+        self._choices: list[Choice] = []
+        self._position: Position | None = None
+        self._note = ""
+
+    def use(self, machine: Machine | None) -> None:
+        """Use a machine from now on; None if the script has errors, so that the last one stays."""
+        with self._lock:
+            self._machine = machine
+            if machine is None or self._position is None:
+                return
+            before = self._simulated
+            self._simulated = _Simulated(machine, self._view(machine))
+            self._replay(before)
+
+    def act(self, body: Mapping[str, Any]) -> object:
+        """Do one action of a page: `start`, `choose`, `back`, `save` or `end`. All but the first
+        have the number of choices that the page shows, `at`. Raises ActionError."""
+        with self._lock:
+            gc.collect(0)  # automatic collection is off
+            action = body.get("action")
+            if action == "start":
+                return self._start()
+            if self._position is None or self._simulated is None:
+                raise ActionError("no simulation runs")
+            if body.get("at") != len(self._choices):
+                raise ActionError("the simulation has gone on in another page: look at it again")
+            match action:
+                case "choose":
+                    return self._choose(self._simulated, self._position, body)
+                case "back":
+                    return self._back(self._simulated, body)
+                case "save":
+                    return self._save_scenario(self._simulated, self._position, body)
+                case "end":
+                    return self._end()
+            raise ActionError("there is no such action")
+
+    # Actions
+
+    def _start(self) -> object:
+        if self._machine is None:
+            raise ActionError("the script has errors, which must be fixed first")
+        self._simulated = _Simulated(self._machine, self._view(self._machine))
+        self._choices, self._note = [], ""
+        return self._show(self._simulated, self._simulated.position([]))
+
+    def _end(self) -> object:
+        self._choices, self._position, self._simulated, self._note = [], None, None, ""
+        self._feed.publish({"kind": "simulation", "state": "off"})
+        return {}
+
+    def _back(self, simulated: _Simulated, body: Mapping[str, Any]) -> object:
+        """Take back the choices from number `to` on; without it, the last one."""
+        to = body.get("to", len(self._choices) - 1)
+        if not isinstance(to, int) or isinstance(to, bool) or not 0 <= to < len(self._choices):
+            raise ActionError("there is no such step")
+        self._choices, self._note = self._choices[:to], ""
+        return self._show(simulated, simulated.position(self._choices))
+
+    def _choose(self, simulated: _Simulated, position: Position, body: Mapping[str, Any]) -> object:
+        path = body.get("path")
+        full = next((full for full in position.waiting if simulated.view.state(full) == path), None)
+        if full is None:
+            raise ActionError(f"`{str(path)[:200]}` does not wait for an outcome")
+        if len(self._choices) >= MOST_CHOICES:
+            raise ActionError(f"a simulation has at most {MOST_CHOICES} steps")
+        step = _step(simulated, full, body)
+        self._choices, self._note = [*self._choices, Choice(full, step)], ""
+        return self._show(simulated, simulated.position(self._choices))
+
+    def _save_scenario(
+        self, simulated: _Simulated, position: Position, body: Mapping[str, Any]
+    ) -> object:
+        name = body.get("name")
+        if not isinstance(name, str) or _NAME.fullmatch(name) is None:
+            raise ActionError("the name of a scenario has letters, digits, `_`, `-` and `.` alone")
+        if position.result is None:
+            raise ActionError("the machine has not ended: choose on, or go back")
+        steps, turns = self._scenario(simulated, position)
+        file = f"{name}.yml"
+        expected = ["--expect", position.result.outcome] if position.result.outcome else []
+        order = ["--schedule", ",".join(turns)] if turns else []
+
+        def command(path: str) -> str:
+            words = ["smachac", "run", self._script, "--mock", path, *expected, *order]
+            return shlex.join(words)
+
+        failure = position.result.error
+        why = "" if failure is None else f"# the run fails: {' '.join(str(failure).split())}\n"
+        saved = self._save(file, lambda path: f"# {command(path)}\n{why}{steps}")
+        return {"file": saved, "command": command(saved)}
+
+    def _scenario(self, simulated: _Simulated, position: Position) -> tuple[str, tuple[str, ...]]:
+        """The text of the scenario of the choices, and the turns of branches without which it is
+        another run. Raises ActionError if it does not play as the simulation does."""
+        machine, shown = simulated.machine, simulated.shown
+        rows = plain_steps_by_path(chosen_scenario(self._choices), machine)
+        text = scenario_text({shown.get(full, full): row for full, row in rows.items()})
+        tree = parse(Source("scenario", text), [])
+        scenario, problems = read_scenario(None if tree is None else plain(tree), machine)
+        for schedule in (None, position.schedule):
+            events: list[Event] = []
+            behaviour = scenario_behaviour(scenario, machine, builtin_behaviour())
+            run(machine, behaviour, events.append, schedule=schedule)
+            if not problems and events == list(position.events):
+                return text, schedule or ()
+        reason = f": {problems[0].message}" if problems else ""
+        raise ActionError(f"a scenario cannot describe this run{reason}")
+
+    # What the pages show
+
+    def _replay(self, before: _Simulated | None) -> None:
+        """Simulate another machine: the choices up to the first one that does not fit."""
+        assert self._simulated is not None
+        simulated = self._simulated
+        moved = [self._moved(choice, before) for choice in self._choices]
+        known = next((at for at, choice in enumerate(moved) if choice is None), len(moved))
+        choices = [choice for choice in moved[:known] if choice is not None]
+        position = simulated.position(choices)
+        if position.performed < len(self._choices):
+            count = len(self._choices)
+            lost = self._choices[position.performed]
+            state = before.view.state(lost.path) if before is not None else lost.path
+            self._note = (
+                f"The script has changed: step {position.performed + 1} of {count},"
+                f" `{state}: {_step_text(lost.step)}`, does not fit any more."
+            )
+        self._choices = choices[: position.performed]
+        self._show(simulated, position)
+
+    def _moved(self, choice: Choice, before: _Simulated | None) -> Choice | None:
+        """A choice of another machine for this one: that of the same state of the script."""
+        assert self._simulated is not None
+        path = before.view.state(choice.path) if before is not None else choice.path
+        state = self._simulated.view.states.get(path)
+        return None if state is None else Choice(state.full, choice.step)
+
+    def _show(self, simulated: _Simulated, position: Position) -> object:
+        self._position = position
+        result = position.result
+        self._feed.publish(
+            {
+                "kind": "simulation",
+                "state": "waits" if result is None else "ended" if result.outcome else "failed",
+                "note": self._note,
+                "t": position.time,
+                "events": [with_shown_paths(event, simulated.shown) for event in position.events],
+                "steps": [
+                    {"path": simulated.view.state(choice.path), "text": _step_text(choice.step)}
+                    for choice in self._choices
+                ],
+                "at": [self._waiting(simulated, position, full) for full in position.waiting],
+                "outcome": None if result is None else result.outcome,
+            }
+        )
+        return {}
+
+    def _waiting(self, simulated: _Simulated, position: Position, full: str) -> dict[str, Any]:
+        """A leaf that waits for a choice: its outcomes with their keys, and what else it can do."""
+        leaf = simulated.leaves[full]
+        stopped = full in position.stopped and PREEMPTED in outcome_names(leaf)
+        names = (PREEMPTED,) if stopped else outcome_names(leaf)
+        visit = 1 + sum(choice.path == full for choice in self._choices)
+        return {
+            "path": simulated.view.state(full),
+            "stopped": full in position.stopped,
+            "stops": PREEMPTED in outcome_names(leaf),
+            "outcomes": [
+                {
+                    "name": name,
+                    "failure": is_failure(name),
+                    "keys": [] if stopped else _keys(simulated, full, name, visit),
+                }
+                for name in names
+            ],
+            "run": "" if stopped else _own_code(leaf),
+            "wait": "" if stopped else self._wait(simulated, position, full),
+        }
+
+    def _wait(self, simulated: _Simulated, position: Position, full: str) -> str:
+        """What happens if a leaf waits: which time limit passes, or that it waits for the other
+        branches; empty if nothing ends the wait."""
+        after = simulated.position([*self._choices, Choice(full, ScenarioStep(wait=True))])
+        passed = after.time - position.time
+        if passed >= LONGEST_WAIT / 2:
+            return ""
+        new = after.events[len(position.events) :]
+        ended = (event["path"] for event in new if event["event"] == "exit")
+        timer = next((path for path in ended if path in simulated.limits), None)
+        if timer is not None and passed > 0:
+            name = simulated.limits[timer].rpartition("/")[2]
+            return f"time limit of {name} in {duration(passed)}: let it pass"
+        others = [path for path in position.waiting if path != full]
+        if passed > 0:
+            return f"wait {duration(passed)} for a stop request"
+        return "wait for a stop request" if others else ""
+
+
+def _own_code(leaf: Leaf) -> str:
+    """What a leaf does without a step, in words; empty if it only ends."""
+    if is_made_of_functions(leaf) or variable_of(leaf, "callbacks") is not None:
+        return "run its functions"
+    if leaf.built_in == "SleepState":
+        time = variable(leaf, "time")
+        return f"wait {duration(float(time))}" if is_number(time) else "wait its time"
+    if leaf.built_in == "ScriptedState" and variable(leaf, "steps"):
+        return "run its steps"
+    return ""
+
+
+def _keys(simulated: _Simulated, full: str, outcome: str, visit: int) -> list[dict[str, Any]]:
+    """The keys that a leaf can write, with values by their types; `written` are those that it
+    writes with an outcome."""
+    leaf = simulated.leaves[full]
+    samples = dict(simulated.samples.outputs(full, leaf, outcome, visit))
+    return [
+        {
+            "name": key.name,
+            "type": str(type_),
+            "text": _is_text(type_),
+            "choices": _choices(type_),
+            "value": value if _is_text(type_) else flow_text(value),
+            "written": key.name in samples,
+        }
+        for key in leaf.outputs
+        for type_ in [simulated.samples.type_of(full, leaf, key.name)]
+        for value in [samples.get(key.name, sample_value(type_, visit))]
+    ]
+
+
+def _is_text(type_: Type) -> bool:
+    return type_.name == "str"
+
+
+def _choices(type_: Type) -> list[str]:
+    """All values of a type, as scenarios have them; empty if there are too many."""
+    if type_.name == "bool":
+        return ["true", "false"]
+    return [flow_text(value) for value in type_.args] if type_.name in ("one_of", "literal") else []
+
+
+def _step(simulated: _Simulated, full: str, body: Mapping[str, Any]) -> ScenarioStep:
+    """The step that a page describes for a leaf. Raises ActionError."""
+    leaf, stop = simulated.leaves[full], body.get("stop") is True
+    if body.get("run") is True:
+        return ScenarioStep(run=True, stop=stop)
+    if body.get("wait") is True:
+        return ScenarioStep(wait=True, stop=stop)
+    error = body.get("error")
+    if isinstance(error, str):
+        return ScenarioStep(error=error.strip() or ERROR, stop=stop)
+    outcome, after = body.get("outcome"), seconds(body.get("after", 0))
+    if not isinstance(outcome, str) or not is_possible(ScenarioStep(outcome=outcome), leaf):
+        raise ActionError(f"`{str(outcome)[:80]}` is not an outcome of `{leaf.name}`")
+    if after is None:
+        raise ActionError("the time is a number and a unit, such as `30 s`, `5 min` or `2 h`")
+    given = body.get("set", {})
+    if not isinstance(given, dict):
+        raise ActionError("the values of keys are missing")
+    return ScenarioStep(
+        outcome=outcome,
+        writes=tuple((key, _value(simulated, full, key, text)) for key, text in given.items()),
+        after=after,
+        stop=stop,
+    )
+
+
+def _value(simulated: _Simulated, full: str, key: str, text: object) -> object:
+    """The value of an output key that a page has as text. Raises ActionError."""
+    leaf = simulated.leaves[full]
+    if all(key != output.name for output in leaf.outputs) or not isinstance(text, str):
+        raise ActionError(f"`{key[:80]}` is not an output key of `{leaf.name}`")
+    type_ = simulated.samples.type_of(full, leaf, key)
+    if _is_text(type_):
+        return text
+    report: list[Any] = []
+    tree = parse(Source(key, text), report)
+    if tree is None or report or "\n" in text:
+        raise ActionError(f"the value of `{key}` cannot be read: write it as in a scenario")
+    value = plain(tree)
+    if (wrong := misfit(type_of_data(_data(value)), type_)) is not None:
+        raise ActionError(f"`{key}` is {type_}: the value is {wrong.given}")
+    return value
+
+
+def _data(value: object) -> Data:
+    """Plain data as a value of a script."""
+    match value:
+        case dict():
+            return Struct(entries=tuple((str(key), _data(item)) for key, item in value.items()))
+        case list():
+            return tuple(map(_data, value))
+        case bool() | int() | float() | str() | None:
+            return value
+    return str(value)
+
+
+def _step_text(step: ScenarioStep) -> str:
+    """A step in words."""
+    words = ["stop request"] if step.stop else []
+    if step.run:
+        words.append("its own code")
+    elif step.wait:
+        words.append("waits")
+    elif step.error:
+        words.append(f"error: {step.error}")
+    else:
+        words.append(step.outcome or "")
+    words += [f"after {in_one_unit(step.after)}"] if step.after else []
+    return ", ".join([*words, *(f"{key} = {flow_text(value)}" for key, value in step.writes)])
