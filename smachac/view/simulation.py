@@ -6,7 +6,7 @@ import gc
 import re
 import shlex
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from smachac.analysis.expression_types import type_of_data
@@ -35,8 +35,8 @@ from smachac.interpreter.simulation import (
 from smachac.interpreter.userdata import LONGEST_WAIT
 from smachac.ir.durations import in_one_unit, seconds
 from smachac.ir.leaf import variable, variable_of
-from smachac.ir.nodes import Data, Leaf, Machine, Struct, is_number
-from smachac.ir.outcome_names import PREEMPTED, is_failure
+from smachac.ir.nodes import Concurrence, Data, Leaf, Machine, Struct, is_number
+from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.script_paths import script_paths
 from smachac.ir.traversal import outcome_names, walk
 from smachac.ir.types import Type
@@ -65,7 +65,8 @@ ERROR = "an error of the simulation"
 class _Simulated:
     """What is known of a machine: its written states, its leaves, the types of its keys.
 
-    `limits` are the timers and pauses, which need no choice, with their states.
+    `limits` are the timers and pauses, which need no choice, with their states; `raced` the leaves
+    in a concurrence that stops them when another branch ends.
     """
 
     def __init__(self, machine: Machine, view: Written) -> None:
@@ -73,11 +74,23 @@ class _Simulated:
         self.leaves = {path: node for path, node in walk(machine.root) if isinstance(node, Leaf)}
         added = [part for part in written(machine).parts.values() if part.role in ADDED]
         self.limits = {part.full: part.state for part in added}
+        self.raced = set(_raced(machine))
         self.shown = script_paths(machine.root)
         self.samples = SampleValues(machine)
 
     def position(self, choices: Sequence[Choice]) -> Position:
         return simulate(self.machine, choices, self.limits)
+
+
+def _raced(machine: Machine) -> Iterator[str]:
+    """The full paths of all states in a concurrence with `join: any`."""
+    inside: set[str] = set()
+    for path, node in walk(machine.root):
+        if path.rpartition("/")[0] in inside:
+            inside.add(path)
+            yield path
+        elif isinstance(node, Concurrence) and node.join == "any":
+            inside.add(path)
 
 
 class Simulation:
@@ -266,11 +279,7 @@ class Simulation:
             "stopped": full in position.stopped,
             "stops": PREEMPTED in outcome_names(leaf),
             "outcomes": [
-                {
-                    "name": name,
-                    "failure": is_failure(name),
-                    "keys": [] if stopped else _keys(simulated, full, name, visit),
-                }
+                {"name": name, "keys": [] if stopped else _keys(simulated, full, name, visit)}
                 for name in names
             ],
             "run": "" if stopped else _own_code(leaf),
@@ -290,10 +299,9 @@ class Simulation:
         if timer is not None and passed > 0:
             name = simulated.limits[timer].rpartition("/")[2]
             return f"time limit of {name} in {duration(passed)}: let it pass"
-        others = [path for path in position.waiting if path != full]
         if passed > 0:
             return f"wait {duration(passed)} for a stop request"
-        return "wait for a stop request" if others else ""
+        return "wait for a stop request" if full in simulated.raced else ""
 
 
 def _own_code(leaf: Leaf) -> str:
