@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from smachac.analysis.expression_types import type_of_data
-from smachac.analysis.type_lattice import misfit
+from smachac.analysis.type_lattice import fits
 from smachac.diagnostics.source import Source
 from smachac.frontend.text.data_files import plain
 from smachac.frontend.text.yaml_tree import parse
@@ -386,8 +386,8 @@ def _value(simulated: _Simulated, full: str, key: str, text: object) -> object:
     if tree is None or report or "\n" in text:
         raise ActionError(f"the value of `{key}` cannot be read: write it as in a scenario")
     value = plain(tree)
-    if (wrong := misfit(type_of_data(_data(value)), type_)) is not None:
-        raise ActionError(f"`{key}` is {type_}: the value is {wrong.given}")
+    if not fits(type_of_data(_data(value)), type_):
+        raise ActionError(f"`{key}` is {type_}: `{text[:80]}` does not fit")
     return value
 
 

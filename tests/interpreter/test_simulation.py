@@ -54,7 +54,7 @@ states:
       template: ConditionalOutcomeState
       input_keys: [count]
       outcomes: [yes, no]
-      conditions: {"yes": "lambda ud: ud.count > 0"}
+      callbacks: {"yes": "lambda ud: ud.count > 0"}
       default_outcome: "no"
       transitions: {"yes": done, "no": lost}
 """
