@@ -42,7 +42,7 @@ from smachac.ir.traversal import outcome_names, walk
 from smachac.ir.types import Type
 from smachac.ir.written import Written, duration, written
 from smachac.runtime.tracing.writer import with_shown_paths
-from smachac.verify.sample_values import SampleValues, sample_value
+from smachac.verify.sample_values import SampleValues
 from smachac.view.feed import Feed
 from smachac.view.server import ActionError
 
@@ -317,22 +317,19 @@ def _own_code(leaf: Leaf) -> str:
 
 
 def _keys(simulated: _Simulated, full: str, outcome: str, visit: int) -> list[dict[str, Any]]:
-    """The keys that a leaf can write, with values by their types; `written` are those that it
-    writes with an outcome."""
+    """The keys that a leaf writes with an outcome, with values by their types."""
     leaf = simulated.leaves[full]
-    samples = dict(simulated.samples.outputs(full, leaf, outcome, visit))
+    samples = simulated.samples.outputs(full, leaf, outcome, visit)
     return [
         {
-            "name": key.name,
+            "name": key,
             "type": str(type_),
             "text": _is_text(type_),
             "choices": _choices(type_),
             "value": value if _is_text(type_) else flow_text(value),
-            "written": key.name in samples,
         }
-        for key in leaf.outputs
-        for type_ in [simulated.samples.type_of(full, leaf, key.name)]
-        for value in [samples.get(key.name, sample_value(type_, visit))]
+        for key, value in samples
+        for type_ in [simulated.samples.type_of(full, leaf, key)]
     ]
 
 

@@ -20,7 +20,8 @@ from smachac.frontend.text.yaml_tree import parse
 from smachac.interpreter.scenario import ScenarioStep, flow_text, read_scenario
 from smachac.ir.written import written
 from smachac.verify.scenarios import outcome_scenarios
-from tests.browser.pages import ROOT
+from tests.browser.pages import ROOT, SCREENSHOTS
+from tests.browser.test_edit import AXE, serious
 from tests.browser.test_live_view import OwnMessages
 from tests.support.viewed import Viewed, starter
 
@@ -188,3 +189,127 @@ def test_each_outcome_is_reached_by_clicks_saved_and_played(
         page.get_by_role("button", name="Simulate the machine", disabled=False).wait_for()
     assert list(messages) == []
     page.close()
+
+
+SCRIPT = """\
+name: sm
+outcomes: [done, lost, stopped]
+states:
+  - LOOK:
+      template: Camera
+      transitions: {found: GRASP, nothing: lost}
+  - GRASP:
+      template: ScriptedState
+      input_keys: [place]
+      outcomes: [held, failed]
+      timeout: 30 s
+      retry: {on: [failed], max: 3}
+      transitions: {held: done, exhausted: lost, timeout: lost, preempted: stopped}
+"""
+
+CAMERA = """\
+kind: state
+outcomes: {found: {}, nothing: {}}
+output_keys:
+  sure: {type: bool}
+  count: {type: int}
+  label: {type: str}
+  place: {type: {name: str, at: "list[float]"}}
+writes: {found: [sure, count, label, place]}
+"""
+
+
+@pytest.fixture
+def view(tmp_path: Path, start: Callable[..., Viewed]) -> Viewed:
+    (tmp_path / "templates").mkdir()
+    (tmp_path / "templates" / "Camera.yml").write_text(CAMERA)
+    (tmp_path / "main.yml").write_text(SCRIPT)
+    return start("view", tmp_path / "main.yml", "--no-browser")
+
+
+def test_keys_time_stops_and_steps_back(browser: Browser, view: Viewed, tmp_path: Path) -> None:
+    page = opened(browser, view)
+    messages = OwnMessages(view.url)
+    messages.watch(page)
+    page.evaluate(AXE.read_text("utf-8"))
+    press(page, "Simulate the machine")
+    here = section(page)
+    here.get_by_label("Value of sure").select_option("false")
+    here.get_by_label("Value of count").fill("three")
+    press(page, "End with found")
+    here.get_by_text("`count` is int: `three` does not fit").wait_for()
+    here.get_by_label("Value of count").fill("3")
+    here.get_by_label("Value of label").fill("no: 1")
+    here.get_by_label("Value of place").fill("{name: box, at: [.nan, 2.5]}")
+    page.screenshot(path=SCREENSHOTS / "simulation_keys.png")
+    press(page, "End with found")
+    wait_for_steps(page, 1)
+    assert "Try 1 of 3 ends with:" in here.inner_text()
+    press(page, "End with failed")
+    wait_for_steps(page, 2)
+    assert "Try 2 of 3 ends with:" in here.inner_text()
+    assert "GRASP (try 2 of 3): choose an outcome" in page.locator(".run-status").inner_text()
+    press(page, "time limit of GRASP in 30 s: let it pass")
+    here.get_by_text("The machine has ended with lost.").wait_for()
+    page.screenshot(path=SCREENSHOTS / "simulation_end.png")
+    assert serious(page) == []
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("z")
+    wait_for_steps(page, 2)
+    here.locator("summary", has_text="more").click()
+    here.get_by_label("A stop request arrives first").check()
+    assert serious(page) == []
+    press(page, "End with held")
+    here.get_by_text("The machine has ended with stopped.").wait_for()
+    press(page, "Save as a scenario")
+    here.get_by_text("Written: ").wait_for()
+    assert (tmp_path / "scenarios" / "stopped.yml").read_text().splitlines()[1:] == [
+        "states:",
+        '  sm/LOOK: {outcome: found, set: {sure: false, count: 3, label: "no: 1",'
+        " place: {name: box, at: [.nan, 2.5]}}}",
+        "  sm/GRASP:",
+        "    - failed",
+        "    - {stop: true, outcome: held}",
+    ]
+    press(page, "Back to the choice of LOOK, step 1")
+    wait_for_steps(page, 0)
+    here.locator("summary", has_text="more").click()
+    here.get_by_label("Message of the error").fill("no camera")
+    press(page, "Let it fail with an error")
+    here.get_by_text("The machine has failed.").wait_for()
+    assert "failed in LOOK: no camera" in page.locator(".run-status").inner_text()
+    assert len(messages) == 1  # that the value of the wrong type was refused
+    page.close()
+
+
+def test_two_tabs_a_reload_and_an_edit(browser: Browser, view: Viewed, tmp_path: Path) -> None:
+    first, second = opened(browser, view), opened(browser, view, color_scheme="dark")
+    press(first, "Simulate the machine")
+    press(first, "End with found")
+    for page in (first, second):
+        wait_for_steps(page, 1)
+        page.locator(".state.waiting[data-path='sm/GRASP']").wait_for()
+    press(second, "End with failed")
+    for page in (first, second):
+        wait_for_steps(page, 2)
+    second.reload()
+    second.wait_for_selector("html[data-ready]")
+    wait_for_steps(second, 2)
+    assert "Try 2 of 3 ends with:" in section(second).inner_text()
+    second.screenshot(path=SCREENSHOTS / "simulation_dark.png")
+    script = tmp_path / "main.yml"
+    script.write_text(SCRIPT.replace("held", "grasped").replace("max: 3", "max: 4"))
+    section(second).get_by_role("button", name="End with grasped", exact=True).wait_for()
+    assert "Try 2 of 4 ends with:" in section(second).inner_text()
+    script.write_text(SCRIPT.replace("failed", "slipped"))
+    section(first).get_by_text("step 2 of 2, `sm/GRASP: failed`, does not fit").wait_for()
+    wait_for_steps(first, 1)
+    first.screenshot(path=SCREENSHOTS / "simulation_edit.png")
+    script.write_text(SCRIPT.replace("held: done", "held: dne"))
+    first.get_by_text("`dne` is neither a state nor an outcome").first.wait_for()
+    press(first, "End with held")
+    section(first).get_by_text("The machine has ended with done.").wait_for()
+    press(first, "End the simulation")
+    for page in (first, second):
+        section(page).wait_for(state="detached")
+        page.close()

@@ -14,7 +14,6 @@ interface KeyField {
   text: boolean;
   choices: string[];
   value: string;
-  written: boolean;
 }
 
 interface Choosable {
@@ -197,7 +196,7 @@ export class Simulation {
     const node = this.viewer.graph.nodes.get(path);
     const look = node?.outcomes.find((each) => each.name === name) ?? node?.repeated?.find((each) => each.name === name);
     if (look?.failure) end.classList.add("failure");
-    return html("div", { class: "ending" }, end, ...fields.map(({ element }) => element));
+    return html("div", { class: "ending", role: "group", "aria-label": name }, end, ...fields.map(({ element }) => element));
   }
 
   private saving(words: string, outcome: string | null): HTMLElement {
@@ -246,7 +245,7 @@ interface Field {
 /** The field of a key: whether it is written, and its value. */
 function keyField(key: KeyField): Field {
   const used = html("input", { type: "checkbox", "aria-label": `Write ${key.name}`, title: "Write this key" });
-  used.checked = key.written;
+  used.checked = true;
   const label = { "aria-label": `Value of ${key.name}`, title: key.type };
   const value = key.choices.length
     ? html("select", label, ...key.choices.map((each) => html("option", { value: each }, each)))

@@ -1930,7 +1930,7 @@ ${answer.content.command}`, "done");
       const node = this.viewer.graph.nodes.get(path);
       const look3 = node?.outcomes.find((each) => each.name === name) ?? node?.repeated?.find((each) => each.name === name);
       if (look3?.failure) end2.classList.add("failure");
-      return html("div", { class: "ending" }, end2, ...fields.map(({ element }) => element));
+      return html("div", { class: "ending", role: "group", "aria-label": name }, end2, ...fields.map(({ element }) => element));
     }
     saving(words, outcome) {
       const name = html("input", { type: "text", required: true, spellcheck: "false", autocomplete: "off" });
@@ -1968,7 +1968,7 @@ ${answer.content.command}`, "done");
   }
   function keyField(key) {
     const used = html("input", { type: "checkbox", "aria-label": `Write ${key.name}`, title: "Write this key" });
-    used.checked = key.written;
+    used.checked = true;
     const label = { "aria-label": `Value of ${key.name}`, title: key.type };
     const value = key.choices.length ? html("select", label, ...key.choices.map((each) => html("option", { value: each }, each))) : html("input", { ...label, type: "text", spellcheck: "false", autocomplete: "off" });
     value.value = key.value;
