@@ -8,7 +8,6 @@ from typing import NamedTuple, Protocol
 from smachac.interpreter.interpreter import Interpreter
 from smachac.interpreter.result import Event, SchedulingChoice
 from smachac.interpreter.scenario import (
-    PlainStep,
     Scenario,
     ScenarioStep,
     perform_step,
@@ -48,22 +47,14 @@ class Replay(NamedTuple):
     followed: bool
 
     @property
-    def rows(self) -> dict[str, list[PlainStep]]:
-        """The steps as plain data."""
-        return {
-            path: [PlainStep(step.outcome or "", {}, False, step.error, step.stop) for step in row]
-            for path, row in self.scenario.steps.items()
-        }
-
-    @property
     def text(self) -> str:
         """The scenario as a file for `smachac run --mock`."""
-        return scenario_text(self.rows)
+        return scenario_text(self.scenario.steps)
 
     @property
     def flow(self) -> str:
         """The scenario on one line."""
-        return scenario_line(self.rows)
+        return scenario_line(self.scenario.steps)
 
 
 class _Guided(Scheduler):

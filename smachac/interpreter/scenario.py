@@ -136,15 +136,13 @@ def perform_step(step: ScenarioStep, leaf: Leaf, userdata: Userdata) -> str:
 
 
 class PlainStep(NamedTuple):
-    """A step as plain data, for generated programs."""
+    """A step as plain data, for generated programs, which have no `after` and `run`."""
 
     outcome: str
     writes: dict[str, object]
     wait: bool
     error: str
     stop: bool
-    after: float = 0.0
-    run: bool = False
 
 
 def plain_steps_by_path(scenario: Scenario, machine: Machine) -> dict[str, list[PlainStep]]:
@@ -159,22 +157,14 @@ def plain_steps_by_path(scenario: Scenario, machine: Machine) -> dict[str, list[
         assert isinstance(leaf, Leaf)
         usual = default_outcome(leaf)
         rows[path] = [
-            PlainStep(
-                step.outcome or usual,
-                dict(step.writes),
-                step.wait,
-                step.error,
-                step.stop,
-                step.after,
-                step.run,
-            )
+            PlainStep(step.outcome or usual, dict(step.writes), step.wait, step.error, step.stop)
             for step in steps
         ]
     return rows
 
 
-def scenario_text(rows: Mapping[str, Sequence[PlainStep]]) -> str:
-    """A scenario as a file for `smachac run --mock`."""
+def scenario_text(rows: Mapping[str, Sequence[ScenarioStep]]) -> str:
+    """A scenario as a file for `smachac run --mock`. Steps with `chances` are not possible."""
     lines = ["states:" if rows else "states: {}"]
     for path, row in rows.items():
         steps = [_short(_step(step)) for step in row]
@@ -185,7 +175,7 @@ def scenario_text(rows: Mapping[str, Sequence[PlainStep]]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def scenario_line(rows: Mapping[str, Sequence[PlainStep]]) -> str:
+def scenario_line(rows: Mapping[str, Sequence[ScenarioStep]]) -> str:
     """A scenario on one line, with steps that are only an outcome as short as possible."""
     states = {path: [_short(_step(step)) for step in row] for path, row in rows.items()}
     parts = (f"{flow_text(path)}: [{', '.join(steps)}]" for path, steps in states.items())
@@ -210,15 +200,16 @@ def _short(step: dict[str, object]) -> str:
     return flow_text(step["outcome"] if [*step] == ["outcome"] else step)
 
 
-def _step(row: PlainStep) -> dict[str, object]:
-    step: dict[str, object] = {"stop": True} if row.stop else {}
-    if row.run:
-        return step | {"run": True}
-    step |= {"after": in_one_unit(row.after)} if row.after else {}
-    if row.error:
-        return step | {"error": row.error}
-    step |= {"wait": True} if row.wait else {}
-    return step | {"outcome": row.outcome} | ({"set": row.writes} if row.writes else {})
+def _step(step: ScenarioStep) -> dict[str, object]:
+    data: dict[str, object] = {"stop": True} if step.stop else {}
+    if step.run:
+        return data | {"run": True}
+    data |= {"after": in_one_unit(step.after)} if step.after else {}
+    if step.error:
+        return data | {"error": step.error}
+    data |= {"wait": True} if step.wait else {}
+    data |= {"outcome": step.outcome} if step.outcome is not None else {}
+    return data | ({"set": dict(step.writes)} if step.writes else {})
 
 
 def quoted(value: object) -> str:

@@ -97,7 +97,7 @@ def _first_difference(
                     expected=[with_shown_paths(event, shown) for event in difference.first],
                     found=[with_shown_paths(event, shown) for event in difference.second],
                     at=difference.at,
-                    rows={shown.get(path, path): row for path, row in case.rows.items() if row},
+                    steps={shown.get(full, full): row for full, row in path.scenario.steps.items()},
                     live=path.live,
                 )
     return None

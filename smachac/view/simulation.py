@@ -14,13 +14,12 @@ from smachac.analysis.type_lattice import fits
 from smachac.diagnostics.source import Source
 from smachac.frontend.text.data_files import plain
 from smachac.frontend.text.yaml_tree import parse
-from smachac.interpreter.behaviours import builtin_behaviour, is_made_of_functions
+from smachac.interpreter.behaviours import builtin_behaviour, own_code
 from smachac.interpreter.interpreter import run
 from smachac.interpreter.result import Event
 from smachac.interpreter.scenario import (
     ScenarioStep,
     flow_text,
-    plain_steps_by_path,
     read_scenario,
     scenario_behaviour,
     scenario_text,
@@ -34,7 +33,7 @@ from smachac.interpreter.simulation import (
 )
 from smachac.interpreter.userdata import LONGEST_WAIT
 from smachac.ir.durations import in_one_unit, seconds
-from smachac.ir.leaf import variable, variable_of
+from smachac.ir.leaf import variable
 from smachac.ir.nodes import Concurrence, Data, Leaf, Machine, Struct, is_number
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.script_paths import script_paths
@@ -189,7 +188,7 @@ class Simulation:
             raise ActionError("the name of a scenario has letters, digits, `_`, `-` and `.` alone")
         if position.result is None:
             raise ActionError("the machine has not ended: choose on, or go back")
-        steps, turns = self._scenario(simulated, position)
+        text, turns = self._scenario(simulated, position)
         file = f"{name}.yml"
         expected = ["--expect", position.result.outcome] if position.result.outcome else []
         order = ["--schedule", ",".join(turns)] if turns else []
@@ -200,15 +199,15 @@ class Simulation:
 
         failure = position.result.error
         why = "" if failure is None else f"# the run fails: {' '.join(str(failure).split())}\n"
-        saved = self._save(file, lambda path: f"# {command(path)}\n{why}{steps}")
+        saved = self._save(file, lambda path: f"# {command(path)}\n{why}{text}")
         return {"file": saved, "command": command(saved)}
 
     def _scenario(self, simulated: _Simulated, position: Position) -> tuple[str, tuple[str, ...]]:
         """The text of the scenario of the choices, and the turns of branches without which it is
         another run. Raises ActionError if it does not play as the simulation does."""
         machine, shown = simulated.machine, simulated.shown
-        rows = plain_steps_by_path(chosen_scenario(self._choices), machine)
-        text = scenario_text({shown.get(full, full): row for full, row in rows.items()})
+        steps = chosen_scenario(self._choices).steps
+        text = scenario_text({shown.get(full, full): row for full, row in steps.items()})
         tree = parse(Source("scenario", text), [])
         scenario, problems = read_scenario(None if tree is None else plain(tree), machine)
         for schedule in (None, position.schedule):
@@ -306,14 +305,14 @@ class Simulation:
 
 def _own_code(leaf: Leaf) -> str:
     """What a leaf does without a step, in words; empty if it only ends."""
-    if is_made_of_functions(leaf) or variable_of(leaf, "callbacks") is not None:
-        return "run its functions"
-    if leaf.built_in == "SleepState":
-        time = variable(leaf, "time")
-        return f"wait {duration(float(time))}" if is_number(time) else "wait its time"
-    if leaf.built_in == "ScriptedState" and variable(leaf, "steps"):
-        return "run its steps"
-    return ""
+    match own_code(leaf):
+        case "time":
+            time = variable(leaf, "time")
+            return f"wait {duration(float(time))}" if is_number(time) else "wait its time"
+        case "":
+            return ""
+        case code:
+            return f"run its {code}"
 
 
 def _keys(simulated: _Simulated, full: str, outcome: str, visit: int) -> list[dict[str, Any]]:

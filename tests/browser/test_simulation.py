@@ -113,7 +113,7 @@ def click_step(page: Page, path: str, step: ScenarioStep) -> None:
         ending = ends.first  # the usual outcome; that of a state with a stop request
     writes = dict(step.writes)
     for field in ending.locator(".key-field").all():
-        name = field.locator(".key").inner_text()
+        name = field.locator(".key").inner_text().split()[0]
         if name in writes:
             value = writes[name]
             text = value if isinstance(value, str) else flow_text(value)

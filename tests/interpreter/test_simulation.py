@@ -16,7 +16,6 @@ from smachac.interpreter.interpreter import run
 from smachac.interpreter.result import Event
 from smachac.interpreter.scenario import (
     ScenarioStep,
-    plain_steps_by_path,
     read_scenario,
     scenario_behaviour,
     scenario_text,
@@ -79,7 +78,7 @@ def position(machine: Machine, choices: list[Choice]) -> Position:
 
 def replayed(machine: Machine, choices: list[Choice], schedule: tuple[str, ...]) -> list[Event]:
     """The trace of the scenario of the choices, written to a file and read again."""
-    text = scenario_text(plain_steps_by_path(chosen_scenario(choices), machine))
+    text = scenario_text(chosen_scenario(choices).steps)
     tree = parse(Source("scenario.yml", text), [])
     assert tree is not None
     scenario, problems = read_scenario(plain(tree), machine)

@@ -292,7 +292,7 @@ def test_a_difference_shows_both_traces_and_a_scenario_to_replay(
     assert text.endswith("python: differs\n")
     assert json.loads(render_json(verdict))["differences"][0]["target"] == "python"
     scenario = rounds.parent / "scenario.yml"
-    scenario.write_text(scenario_text(verdict.disagreements[0].rows), "utf-8")
+    scenario.write_text(scenario_text(verdict.disagreements[0].steps), "utf-8")
     assert main(["run", str(rounds), "--mock", str(scenario), "-q"]) == 0
     last = verdict.disagreements[0].expected[-1]
     assert capsys.readouterr().out == f"outcome: {last['outcome']}\n"

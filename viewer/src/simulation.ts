@@ -177,7 +177,7 @@ export class Simulation {
       standing.wait && button(standing.wait, standing.wait, () => choose({ wait: true }), "Let time pass"),
     ].filter((each) => each !== "");
     const stopWords = standing.stops ? "A stop request arrives first: it ends with preempted" : "A stop request arrives first";
-    return html("div", { class: "waiting" },
+    const form = html("div", { class: "waiting" },
       html("p", {}, `${standing.stopped ? "It has a stop request. " : ""}${capital(this.round(standing.path) || "it")} ends with:`),
       ...outcomes,
       other.length ? html("p", {}, "Or:") : null,
@@ -186,6 +186,8 @@ export class Simulation {
         html("label", { class: "more-field" }, "It takes", takes),
         standing.stopped ? null : html("label", { class: "more-field" }, stop, stopWords),
         html("p", { class: "more-field" }, button("Let it fail with an error", "error", () => choose({ error: message.value })), message)));
+    form.addEventListener("input", () => this.say(""));
+    return form;
   }
 
   /** An outcome with the keys that the state writes. */
@@ -252,6 +254,6 @@ function keyField(key: KeyField): Field {
     : html("input", { ...label, type: "text", spellcheck: "false", autocomplete: "off" });
   value.value = key.value;
   value.addEventListener("input", () => used.checked = true);
-  const element = html("div", { class: "key-field" }, used, html("span", { class: "key", title: key.type }, key.name), value);
+  const element = html("div", { class: "key-field" }, used, html("span", { class: "key", title: key.type }, key.name, " ", html("small", {}, key.type)), value);
   return { key, used, value, element };
 }

@@ -1906,7 +1906,7 @@ ${answer.content.command}`, "done");
         standing.wait && button(standing.wait, standing.wait, () => choose({ wait: true }), "Let time pass")
       ].filter((each) => each !== "");
       const stopWords = standing.stops ? "A stop request arrives first: it ends with preempted" : "A stop request arrives first";
-      return html(
+      const form = html(
         "div",
         { class: "waiting" },
         html("p", {}, `${standing.stopped ? "It has a stop request. " : ""}${capital(this.round(standing.path) || "it")} ends with:`),
@@ -1922,6 +1922,8 @@ ${answer.content.command}`, "done");
           html("p", { class: "more-field" }, button("Let it fail with an error", "error", () => choose({ error: message.value })), message)
         )
       );
+      form.addEventListener("input", () => this.say(""));
+      return form;
     }
     /** An outcome with the keys that the state writes. */
     outcome(path, { name, keys: keys2 }, choose) {
@@ -1973,7 +1975,7 @@ ${answer.content.command}`, "done");
     const value = key.choices.length ? html("select", label, ...key.choices.map((each) => html("option", { value: each }, each))) : html("input", { ...label, type: "text", spellcheck: "false", autocomplete: "off" });
     value.value = key.value;
     value.addEventListener("input", () => used.checked = true);
-    const element = html("div", { class: "key-field" }, used, html("span", { class: "key", title: key.type }, key.name), value);
+    const element = html("div", { class: "key-field" }, used, html("span", { class: "key", title: key.type }, key.name, " ", html("small", {}, key.type)), value);
     return { key, used, value, element };
   }
 
