@@ -6,7 +6,7 @@ import gc
 import re
 import shlex
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from smachac.analysis.expression_types import type_of_data
@@ -37,10 +37,11 @@ from smachac.ir.leaf import variable
 from smachac.ir.nodes import Concurrence, Data, Leaf, Machine, Struct, is_number
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.script_paths import script_paths
+from smachac.ir.secret_keys import secret_keys
 from smachac.ir.traversal import outcome_names, walk
 from smachac.ir.types import Type
 from smachac.ir.written import Written, duration, written
-from smachac.runtime.tracing.writer import with_shown_paths
+from smachac.runtime.tracing.writer import SECRET, with_shown_paths
 from smachac.verify.sample_values import SampleValues
 from smachac.view.feed import Feed
 from smachac.view.server import ActionError
@@ -75,7 +76,12 @@ class _Simulated:
         self.limits = {part.full: part.state for part in added}
         self.raced = set(_raced(machine))
         self.shown = script_paths(machine.root)
+        self.secret = secret_keys(machine)
         self.samples = SampleValues(machine)
+
+    def words(self, choice: Choice) -> str:
+        """The step of a choice in words, without the values of secret keys."""
+        return _step_text(choice.step, self.secret.get(choice.path, ()))
 
     def position(self, choices: Sequence[Choice]) -> Position:
         return simulate(self.machine, choices, self.limits)
@@ -118,11 +124,11 @@ class Simulation:
         """Use a machine from now on; None if the script has errors, so that the last one stays."""
         with self._lock:
             self._machine = machine
-            if machine is None or self._position is None:
-                return
             before = self._simulated
+            if machine is None or before is None:
+                return
             self._simulated = _Simulated(machine, self._view(machine))
-            self._replay(before)
+            self._replay(self._simulated, before)
 
     def act(self, body: Mapping[str, Any]) -> object:
         """Do one action of a page: `start`, `choose`, `back`, `save` or `end`. All but the first
@@ -221,31 +227,21 @@ class Simulation:
 
     # What the pages show
 
-    def _replay(self, before: _Simulated | None) -> None:
+    def _replay(self, simulated: _Simulated, before: _Simulated) -> None:
         """Simulate another machine: the choices up to the first one that does not fit."""
-        assert self._simulated is not None
-        simulated = self._simulated
-        moved = [self._moved(choice, before) for choice in self._choices]
+        moved = [_moved(choice, before.view, simulated.view) for choice in self._choices]
         known = next((at for at, choice in enumerate(moved) if choice is None), len(moved))
         choices = [choice for choice in moved[:known] if choice is not None]
         position = simulated.position(choices)
         if position.performed < len(self._choices):
             count = len(self._choices)
             lost = self._choices[position.performed]
-            state = before.view.state(lost.path) if before is not None else lost.path
             self._note = (
                 f"The script has changed: step {position.performed + 1} of {count},"
-                f" `{state}: {_step_text(lost.step)}`, does not fit any more."
+                f" `{before.view.state(lost.path)}: {before.words(lost)}`, does not fit any more."
             )
         self._choices = choices[: position.performed]
         self._show(simulated, position)
-
-    def _moved(self, choice: Choice, before: _Simulated | None) -> Choice | None:
-        """A choice of another machine for this one: that of the same state of the script."""
-        assert self._simulated is not None
-        path = before.view.state(choice.path) if before is not None else choice.path
-        state = self._simulated.view.states.get(path)
-        return None if state is None else Choice(state.full, choice.step)
 
     def _show(self, simulated: _Simulated, position: Position) -> object:
         self._position = position
@@ -258,7 +254,7 @@ class Simulation:
                 "t": position.time,
                 "events": [with_shown_paths(event, simulated.shown) for event in position.events],
                 "steps": [
-                    {"path": simulated.view.state(choice.path), "text": _step_text(choice.step)}
+                    {"path": simulated.view.state(choice.path), "text": simulated.words(choice)}
                     for choice in self._choices
                 ],
                 "at": [self._waiting(simulated, position, full) for full in position.waiting],
@@ -382,7 +378,8 @@ def _value(simulated: _Simulated, full: str, key: str, text: object) -> object:
     if tree is None or report or "\n" in text:
         raise ActionError(f"the value of `{key}` cannot be read: write it as in a scenario")
     value = plain(tree)
-    if not fits(type_of_data(_data(value)), type_):
+    is_message = any(sign in str(type_) for sign in "/.")  # whose values scenarios have no form for
+    if not is_message and not fits(type_of_data(_data(value)), type_):
         raise ActionError(f"`{key}` is {type_}: `{text[:80]}` does not fit")
     return value
 
@@ -399,7 +396,13 @@ def _data(value: object) -> Data:
     return str(value)
 
 
-def _step_text(step: ScenarioStep) -> str:
+def _moved(choice: Choice, before: Written, now: Written) -> Choice | None:
+    """A choice in one machine for another one: that of the same state of the script."""
+    state = now.states.get(before.state(choice.path))
+    return None if state is None else Choice(state.full, choice.step)
+
+
+def _step_text(step: ScenarioStep, secret: Collection[str]) -> str:
     """A step in words."""
     words = ["stop request"] if step.stop else []
     if step.run:
@@ -411,4 +414,6 @@ def _step_text(step: ScenarioStep) -> str:
     else:
         words.append(step.outcome or "")
     words += [f"after {in_one_unit(step.after)}"] if step.after else []
-    return ", ".join([*words, *(f"{key} = {flow_text(value)}" for key, value in step.writes)])
+    for key, value in step.writes:
+        words.append(f"{key} = {SECRET if key in secret else flow_text(value)}")
+    return ", ".join(words)

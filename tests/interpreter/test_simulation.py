@@ -6,6 +6,8 @@ import random
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, given, seed, settings
+from hypothesis import strategies as st
 
 from smachac.diagnostics.source import Source
 from smachac.driver import analyse_script
@@ -24,8 +26,12 @@ from smachac.interpreter.simulation import Choice, Position, chosen_scenario, si
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import outcome_names, walk
 from smachac.ir.written import written
-from tests.support.examples import seeds
+from tests.strategies.full_machines import busy_machines
+from tests.strategies.machines import valid_machines
+from tests.support.examples import examples, seeds
 from tests.support.sugared_scripts import random_script
+
+SLOW = list(HealthCheck)
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -199,10 +205,10 @@ VALUES = (
 )
 
 
-@pytest.mark.parametrize("seed", seeds(20, 60, 300))
-def test_the_scenario_of_choices_gives_the_same_trace(seed: int) -> None:
-    machine = random_script(seed).machine()
-    choices = random_walk(machine, random.Random(seed), 60)
+@pytest.mark.parametrize("number", seeds(20, 60, 300))
+def test_the_scenario_of_choices_gives_the_same_trace(number: int) -> None:
+    machine = random_script(number).machine()
+    choices = random_walk(machine, random.Random(number), 60)
     here = position(machine, choices)
     if here.result is not None:
         assert replayed(machine, choices, here.schedule) == list(here.events)
@@ -215,10 +221,27 @@ def test_the_scenario_of_an_example_gives_the_same_trace(name: str) -> None:
     machine = analyse_script(EXAMPLES / name / "main.yml").machine
     assert machine is not None
     ended = 0
-    for seed in range(6):
-        choices = random_walk(machine, random.Random(seed), 80)
+    for number in range(6):
+        choices = random_walk(machine, random.Random(number), 80)
         here = position(machine, choices)
         if here.result is not None:
             ended += 1
             assert replayed(machine, choices, here.schedule) == list(here.events)
     assert ended
+
+
+@seed(0)
+@settings(max_examples=examples(200), database=None, deadline=None, suppress_health_check=SLOW)
+@given(st.one_of(valid_machines(), busy_machines().map(lambda drawn: drawn[0])), st.randoms())
+def test_the_scenario_of_any_machine_gives_the_same_trace(
+    machine: Machine, chance: random.Random
+) -> None:
+    choices = random_walk(machine, chance, 40)
+    here = position(machine, choices)
+    assert position(machine, choices) == here
+    if here.result is not None:
+        assert replayed(machine, choices, here.schedule) == list(here.events)
+    for count in range(len(choices)):
+        before = simulate(machine, choices[:count], automatic(machine))
+        assert list(before.events) == list(here.events[: len(before.events)])
+        assert choices[count].path in before.waiting

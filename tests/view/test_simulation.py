@@ -200,6 +200,26 @@ def test_an_expression_that_fails_ends_the_run(pages: Pages) -> None:
     assert page.status["outcome"] == "lost"
 
 
+SECRET_KEY = """\
+name: sm
+outcomes: [done]
+userdata: {password: {type: str, value: "", secret: true}}
+states:
+  - A:
+      template: ScriptedState
+      outcomes: [ok]
+      output_keys: [password]
+      transitions: {ok: done}
+"""
+
+
+def test_secret_values_are_not_shown(pages: Pages) -> None:
+    _, page = pages(SECRET_KEY)
+    page.choose("sm/A", "ok", set={"password": "open sesame"})
+    assert "sesame" not in json.dumps(page.status)
+    assert page.status["steps"][0]["text"] == "ok, password = (secret)"
+
+
 KEYS = """\
 name: sm
 outcomes: [done]
@@ -220,6 +240,8 @@ output_keys:
   many: {type: "list[int]"}
   place: {type: Pose}
   form: {type: {name: str, size: float}}
+  goal: {type: geometry_msgs/Pose}
+  path: {type: "list[geometry_msgs/Pose]"}
 """
 
 
@@ -242,6 +264,7 @@ output_keys:
         ("many", "[1, two]", "`many` is"),
         ("place", "[[1.5, 0, 0], [0, 0, 0, 1]]", [[1.5, 0, 0], [0, 0, 0, 1]]),
         ("form", "{name: box, size: 0.5}", {"name": "box", "size": 0.5}),
+        ("goal", "{position: {x: 1.5}}", {"position": {"x": 1.5}}),
         ("form", "{name: box", "the value of `form` cannot be read: write it as in a scenario"),
         ("count", "", "the value of `count` cannot be read"),
         ("count", "&a [*a, *a]", "the value of `count` cannot be read"),
