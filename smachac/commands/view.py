@@ -45,7 +45,8 @@ if TYPE_CHECKING:
 
 EXAMPLES = """\
 examples:
-  smachac view main.yml                        the picture, drawn again when a file changes
+  smachac view main.yml                        the picture, drawn again when a file changes;
+                                               edit it, simulate it, save scenarios
   smachac view machine.py                      the machine in a Python file
   smachac view main.yml --generated            with the states that fields as `retry` add
   smachac view main.yml --attach run.jsonl     replay a trace; follow it while it is written

@@ -55,9 +55,6 @@ text from its path, unless it exists with another text; the path. Raises ActionE
 
 _NAME = re.compile(r"\w[\w.-]{0,99}")
 
-ADDED = ("timer", "pause")
-"""The roles of leaves that fields of the script add."""
-
 ERROR = "an error of the simulation"
 """The message of an exception that the user chooses without one."""
 
@@ -65,15 +62,16 @@ ERROR = "an error of the simulation"
 class _Simulated:
     """What is known of a machine: its written states, its leaves, the types of its keys.
 
-    `limits` are the timers and pauses, which need no choice, with their states; `raced` the leaves
-    in a concurrence that stops them when another branch ends.
+    `automatic` are the timers and pauses, which need no choice; `limits` the timers, with their
+    states; `raced` the leaves in a concurrence that stops them when another branch ends.
     """
 
     def __init__(self, machine: Machine, view: Written) -> None:
         self.machine, self.view = machine, view
         self.leaves = {path: node for path, node in walk(machine.root) if isinstance(node, Leaf)}
-        added = [part for part in written(machine).parts.values() if part.role in ADDED]
-        self.limits = {part.full: part.state for part in added}
+        parts = written(machine).parts.values()
+        self.automatic = {part.full for part in parts if part.role in ("timer", "pause")}
+        self.limits = {part.full: part.state for part in parts if part.role == "timer"}
         self.raced = set(_raced(machine))
         self.shown = script_paths(machine.root)
         self.secret = secret_keys(machine)
@@ -84,7 +82,7 @@ class _Simulated:
         return _step_text(choice.step, self.secret.get(choice.path, ()))
 
     def position(self, choices: Sequence[Choice]) -> Position:
-        return simulate(self.machine, choices, self.limits)
+        return simulate(self.machine, choices, self.automatic)
 
 
 def _raced(machine: Machine) -> Iterator[str]:
@@ -203,8 +201,10 @@ class Simulation:
             words = ["smachac", "run", self._script, "--mock", path, *expected, *order]
             return shlex.join(words)
 
-        failure = position.result.error
-        why = "" if failure is None else f"# the run fails: {' '.join(str(failure).split())}\n"
+        why = ""
+        if (failure := position.result.error) is not None:
+            place = simulated.shown.get(failure.path, failure.path)
+            why = f"# the run fails in {place}: {' '.join(failure.message.split())}\n"
         saved = self._save(file, lambda path: f"# {command(path)}\n{why}{text}")
         return {"file": saved, "command": command(saved)}
 
@@ -289,11 +289,12 @@ class Simulation:
         if passed >= LONGEST_WAIT / 2:
             return ""
         new = after.events[len(position.events) :]
-        ended = (event["path"] for event in new if event["event"] == "exit")
-        timer = next((path for path in ended if path in simulated.limits), None)
-        if timer is not None and passed > 0:
-            name = simulated.limits[timer].rpartition("/")[2]
-            return f"time limit of {name} in {duration(passed)}: let it pass"
+        ended = (event for event in new if event["event"] == "exit" and event["t"] > position.time)
+        timer = next((event for event in ended if event["path"] in simulated.limits), None)
+        if timer is not None:
+            name = simulated.limits[timer["path"]].rpartition("/")[2]
+            left = duration(timer["t"] - position.time)
+            return f"time limit of {name} in {left}: let it pass"
         if passed > 0:
             return f"wait {duration(passed)} for a stop request"
         return "wait for a stop request" if full in simulated.raced else ""

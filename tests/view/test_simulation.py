@@ -180,7 +180,7 @@ def test_time_limits_stops_and_errors(pages: Pages) -> None:
     assert main(saved["command"].split()[1:]) == 1
     assert Path("scenarios/gone.yml").read_text() == (
         "# smachac run main.yml --mock scenarios/gone.yml\n"
-        "# the run fails: sm/GRASP/TIMED/GRASP: the gripper: is 'gone'\n"
+        "# the run fails in sm/GRASP: the gripper: is 'gone'\n"
         "states:\n"
         "  sm/LOOK: found\n"
         "  sm/GRASP: {error: \"the gripper: is 'gone'\"}\n"
@@ -412,6 +412,28 @@ def test_timers_need_no_choice(pages: Pages, view: Any) -> None:
     page.choose("sm/LOOK", "found")
     (path,) = page.waiting
     assert path == ("sm/GRASP" if view is written else "sm/GRASP/TIMED/GRASP")
+
+
+SLOW_RETRY = """\
+name: sm
+outcomes: [done, lost]
+states:
+  - A:
+      template: ScriptedState
+      outcomes: [ok]
+      timeout: 30 s
+      retry: {on: [timeout], max: 2, delay: 10 s}
+      transitions: {ok: done, exhausted: lost, preempted: lost}
+"""
+
+
+def test_the_time_to_a_limit_is_without_the_pause_behind_it(pages: Pages) -> None:
+    _, page = pages(SLOW_RETRY)
+    for t in (0.0, 40.0):
+        assert page.status["t"] == t
+        assert page.status["at"][0]["wait"] == "time limit of A in 30 s: let it pass"
+        page.choose("sm/A", wait=True)
+    assert (page.status["outcome"], page.status["t"]) == ("lost", 70.0)
 
 
 RACE = """\
