@@ -398,20 +398,19 @@ def play_orders(
     """
     from itertools import islice
 
-    from smachac.interpreter.behaviours import builtin_behaviour
     from smachac.interpreter.explore import explore
-    from smachac.interpreter.scenario import scenario_behaviour
     from smachac.interpreter.userdata import trace_value
     from smachac.ir.script_paths import script_paths
     from smachac.ir.secret_keys import secret_keys
     from smachac.runtime.tracing.writer import SECRET, shown_path
+    from smachac.sweep.play import played_behaviour
 
     paths = script_paths(machine.root)
     secret = secret_keys(machine).get(machine.root.name, ())
     ends: dict[str, list[InterpreterResult]] = {}
     orders = explore(
         machine,
-        lambda: scenario_behaviour(scenario, machine, builtin_behaviour(seed), seed),
+        lambda: played_behaviour(machine, scenario, seed),
         max_steps=max_steps,
     )
     for result in islice(orders, most):

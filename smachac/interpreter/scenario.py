@@ -7,14 +7,14 @@ import copy
 import json
 import math
 import random
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.diagnostics.spelling import MOST_EXPLAINED, is_plain
 from smachac.diagnostics.wording import listed
-from smachac.interpreter.behaviours import preemptible
+from smachac.interpreter.behaviours import own_code, preemptible
 from smachac.interpreter.result import Behaviour
 from smachac.interpreter.userdata import BehaviourError, Userdata
 from smachac.ir.durations import in_one_unit, seconds
@@ -68,19 +68,37 @@ class Scenario:
     """The steps of leaves by path. Visit n performs step n; the last step repeats.
 
     A path is that of the script (docs/language.md, Paths) or the full one, and may be shortened to
-    its end (`GRASP`, `PICK/GRASP`) if only one leaf has that end.
+    its end (`GRASP`, `PICK/GRASP`) if only one leaf has that end. `fill`: output keys that a step
+    does not write get values by their types.
     """
 
     steps: Mapping[str, tuple[ScenarioStep, ...]]
+    fill: bool = False
+
+
+Fill = Callable[[str, Leaf, str, int], Sequence[tuple[str, object]]]
+"""The values that a leaf writes by their types: from its path, itself, its outcome and the number
+of its visit, from 1."""
+
+SCENARIO_FIELDS: Mapping[str, str] = {
+    "states": "The steps of states, by path; the last step repeats.",
+    "fill": "Output keys that a step does not set get values by their types.",
+}
+"""The fields of a scenario file, with their descriptions."""
 
 
 def scenario_behaviour(
-    scenario: Scenario, machine: Machine, otherwise: Behaviour, seed: int = 0
+    scenario: Scenario,
+    machine: Machine,
+    otherwise: Behaviour,
+    seed: int = 0,
+    fill: Fill | None = None,
 ) -> Behaviour:
     """A behaviour that follows a scenario; leaves without steps follow `otherwise`.
 
-    `seed` is that of outcomes with probabilities; each leaf has random numbers of its own. Raises
-    ValueError for a path that names no leaf, or several.
+    `seed` is that of outcomes with probabilities; each leaf has random numbers of its own. With
+    `fill`, leaves that do not run their own code write all their outputs. Raises ValueError for a
+    path that names no leaf, or several.
     """
     by_path = _by_path(scenario, machine)
     others = preemptible(otherwise)
@@ -88,14 +106,19 @@ def scenario_behaviour(
 
     def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
         steps = by_path.get(path)
-        if not steps:
+        if not steps and (fill is None or own_code(leaf)):
             return others(path, leaf, visit, userdata)
+        steps = steps or (ScenarioStep(),)
         step = steps[min(visit, len(steps)) - 1]
         if step.chances:
             if path not in sources:
                 sources[path] = random.Random(f"{seed}/{path}")
             outcomes, weights = zip(*step.chances, strict=True)
             step = replace(step, outcome=sources[path].choices(outcomes, weights)[0])
+        if fill is not None:
+            outcome = step.outcome if step.outcome is not None else default_outcome(leaf)
+            writes = {**dict(fill(path, leaf, outcome, visit)), **dict(step.writes)}
+            step = replace(step, writes=tuple(writes.items()))
         return play_step(step, others, path, leaf, visit, userdata)
 
     return behave
@@ -267,10 +290,14 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[Scenar
         help_ = next(filter(None, near), None) or f"write `states: {{{_example(leaves)}}}`"
         return Scenario(steps={}), [ScenarioProblem(message, help_)]
     problems.extend(
-        ScenarioProblem(f"unknown key `{key}`; a scenario has only `states`", f"remove `{key}`")
+        ScenarioProblem(
+            f"unknown key `{key}`; a scenario has `states` and `fill`", f"remove `{key}`"
+        )
         for key in data
-        if key != "states"
+        if key not in SCENARIO_FIELDS
     )
+    if not isinstance(data.get("fill", False), bool):
+        problems.append(ScenarioProblem("`fill` is true or false", "write `fill: true`"))
     names: dict[str, str] = {}
     for key, given in data["states"].items():
         name = str(key)
@@ -292,7 +319,7 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[Scenar
             problems.append(ScenarioProblem(f"`{name}` has no steps", help_, name))
         reader = _StepReader(leaves[path], name, problems)
         steps[path] = tuple(reader.step(entry, at) for at, entry in enumerate(entries, 1))
-    return Scenario(steps=steps), problems
+    return Scenario(steps=steps, fill=data.get("fill") is True), problems
 
 
 @dataclass(frozen=True, slots=True)
