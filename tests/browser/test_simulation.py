@@ -297,6 +297,8 @@ def test_two_tabs_a_reload_and_an_edit(browser: Browser, view: Viewed, tmp_path:
     wait_for_steps(second, 2)
     assert "Try 2 of 3 ends with:" in section(second).inner_text()
     second.screenshot(path=SCREENSHOTS / "simulation_dark.png")
+    second.evaluate(AXE.read_text("utf-8"))
+    assert serious(second) == []
     script = tmp_path / "main.yml"
     script.write_text(SCRIPT.replace("held", "grasped").replace("max: 3", "max: 4"))
     section(second).get_by_role("button", name="End with grasped", exact=True).wait_for()
@@ -305,6 +307,14 @@ def test_two_tabs_a_reload_and_an_edit(browser: Browser, view: Viewed, tmp_path:
     section(first).get_by_text("step 2 of 2, `sm/GRASP: failed`, does not fit").wait_for()
     wait_for_steps(first, 1)
     first.screenshot(path=SCREENSHOTS / "simulation_edit.png")
+    script.write_text(SCRIPT.replace("LOOK", "SEARCH"))
+    for page in (first, second):
+        page.locator(".state.selected.waiting[data-path='sm/SEARCH']").wait_for()
+        wait_for_steps(page, 0)
+    script.write_text(SCRIPT)
+    first.locator(".state.selected.waiting[data-path='sm/LOOK']").wait_for()
+    press(first, "End with found")
+    wait_for_steps(first, 1)
     script.write_text(SCRIPT.replace("held: done", "held: dne"))
     first.get_by_text("`dne` is neither a state nor an outcome").first.wait_for()
     press(first, "End with held")

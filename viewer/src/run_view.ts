@@ -157,7 +157,10 @@ class RunView {
 
   private async remodel(model: Viewer["graph"]["model"]): Promise<void> {
     await this.viewer.setModel(model);
-    if (this.simulation.runs) this.simulated(); // its states are those of the machine now
+    if (this.simulation.runs) {
+      this.simulated(); // its states are those of the machine now
+      await this.simulation.remodelled();
+    }
     this.loggedTo = -1;
     this.draw();
   }

@@ -99,6 +99,13 @@ export class Simulation {
     await this.viewer.select(this.at[0]?.path ?? null);
   }
 
+  /** The machine has changed: its states may have other names. */
+  async remodelled(): Promise<void> {
+    this.shown = null;
+    this.viewer.refresh();
+    await this.follow();
+  }
+
   private show(): void {
     this.element.hidden = this.token === null || !this.runs;
     this.start.disabled = this.runs;

@@ -1831,6 +1831,12 @@ ${key}`, { path, key, value: event.value, t: state.t, order: state.writes });
       if (this.status.state === "off" || this.at.some(({ path }) => path === selected)) return;
       await this.viewer.select(this.at[0]?.path ?? null);
     }
+    /** The machine has changed: its states may have other names. */
+    async remodelled() {
+      this.shown = null;
+      this.viewer.refresh();
+      await this.follow();
+    }
     show() {
       this.element.hidden = this.token === null || !this.runs;
       this.start.disabled = this.runs;
@@ -2446,7 +2452,10 @@ ${place2.key}`;
     }
     async remodel(model) {
       await this.viewer.setModel(model);
-      if (this.simulation.runs) this.simulated();
+      if (this.simulation.runs) {
+        this.simulated();
+        await this.simulation.remodelled();
+      }
       this.loggedTo = -1;
       this.draw();
     }
