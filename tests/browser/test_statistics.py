@@ -107,7 +107,7 @@ def test_an_outcome_that_objects_have_is_counted(browser: Browser, tmp_path: Pat
     assert page.locator(".line.never").count() == 3
 
 
-SCREEN = {"width": 1280, "height": 800}
+WIDTH, HEIGHT = 1280, 800
 
 
 def test_the_page_of_a_sweep_of_50_states_has_at_most_three_screens(
@@ -125,12 +125,12 @@ def test_the_page_of_a_sweep_of_50_states_has_at_most_three_screens(
     options = ["--runs", "40", "--jobs", "1", "--format", "html", "-o", str(page_file)]
     main(["sweep", str(script), "--mock", str(scenario), *options])
     for scheme in ("light", "dark"):
-        page = browser.new_page(viewport=SCREEN, color_scheme=scheme)
+        page = browser.new_page(viewport={"width": WIDTH, "height": HEIGHT}, color_scheme=scheme)
         page.goto(page_file.resolve().as_uri())
         page.frame_locator("iframe").locator("html[data-ready]").wait_for()
         root = "document.documentElement"
         height, width = page.evaluate(f"[{root}.scrollHeight, {root}.scrollWidth]")
-        assert height <= 3 * SCREEN["height"]
-        assert width <= SCREEN["width"]
+        assert height <= 3 * HEIGHT
+        assert width <= WIDTH
         page.screenshot(path=SCREENSHOTS / f"sweep_{scheme}.png", full_page=True)
         page.close()

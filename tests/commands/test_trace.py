@@ -84,10 +84,10 @@ states:
             "`sm/A (timeout)` ends with `bad`, in the script with `ok`",
         ),
         (
-            '"enter", "path": "sm/A (timeout)/TIMER"',
-            '"enter", "path": "sm/A"',
-            "`sm/A` is running already",
-            "`sm/A` is running already",
+            '"exit", "path": "sm/A", "outcome": "ok"',
+            '"exit", "path": "sm/A", "outcome": "lost"',
+            "`sm/A` ends with `lost`, which is none of its outcomes",
+            "`sm/A` ends with `lost`, which is none of its outcomes",
         ),
         (
             '"path": "sm/A (try)", "outcome": "ok", "to": "sm/A (retry):ok"',

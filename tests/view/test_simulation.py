@@ -493,6 +493,7 @@ def test_the_server_simulates_the_script_on_disk(
     assert status["steps"] == []
     assert view.post("/simulate", {**choice, "outcome": "nothing"})[0] == 200
     assert view.post("/simulate", {"action": "save", "at": 1, "name": "lost"})[0] == 200
-    command = [sys.executable, "-m", "smachac", "run", script, "--mock"]
-    found = subprocess.run([*command, tmp_path / "scenarios/lost.yml"], check=False)
+    saved = str(tmp_path / "scenarios" / "lost.yml")
+    command = [sys.executable, "-m", "smachac", "run", str(script), "--mock", saved]
+    found = subprocess.run(command, check=False)
     assert found.returncode == 0
