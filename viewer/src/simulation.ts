@@ -230,7 +230,9 @@ export class Simulation {
       back.classList.add("link");
       return html("li", {}, back, html("span", {}, ` ${text}`));
     });
-    return html("details", { open: true }, html("summary", {}, "steps"), html("ol", { class: "steps", start: 1 }, ...rows));
+    const list = html("ol", { class: "steps", tabindex: "0", "aria-label": "Steps" }, ...rows);
+    requestAnimationFrame(() => list.scrollTop = list.scrollHeight);
+    return html("details", { open: true }, html("summary", {}, "steps"), list);
   }
 
   private key(event: KeyboardEvent): void {

@@ -1963,7 +1963,9 @@ ${answer.content.command}`, "done");
         back.classList.add("link");
         return html("li", {}, back, html("span", {}, ` ${text}`));
       });
-      return html("details", { open: true }, html("summary", {}, "steps"), html("ol", { class: "steps", start: 1 }, ...rows));
+      const list = html("ol", { class: "steps", tabindex: "0", "aria-label": "Steps" }, ...rows);
+      requestAnimationFrame(() => list.scrollTop = list.scrollHeight);
+      return html("details", { open: true }, html("summary", {}, "steps"), list);
     }
     key(event) {
       if (event.key !== "z" || event.ctrlKey || event.metaKey || event.altKey || this.back.disabled || !this.runs) return;
