@@ -32,6 +32,13 @@ def search_folders(parser: argparse.ArgumentParser) -> None:
     folder(parser, "templates", "templates and interfaces")
 
 
+def generated_states(parser: argparse.ArgumentParser) -> None:
+    """`--generated`: the states of the graph in place of those that are written."""
+    parser.add_argument("--generated", action="store_true",
+                        help="also show the states that `timeout`, `retry` and `for_each` add"
+                        )  # fmt: skip
+
+
 def folder(parser: argparse.ArgumentParser, name: str, what: str) -> None:
     """An option that names one more folder each time it is given."""
     parser.add_argument(f"--{name}", type=as_path, action="append", default=[], metavar="DIR",

@@ -10,7 +10,15 @@ from argparse import Namespace
 from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 
-from smachac.commands.arguments import SCRIPT, as_path, colour, count, names, search_folders, seed
+from smachac.commands.arguments import (
+    SCRIPT,
+    as_path,
+    colour,
+    count,
+    names,
+    search_folders,
+    seed,
+)
 from smachac.commands.interrupts import end_at_stop_signals
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
 from smachac.commands.swapped import swapped_option
@@ -91,6 +99,9 @@ def run_arguments(parser: argparse.ArgumentParser) -> None:
                         " free)")  # fmt: skip
     parser.add_argument("--view-paused", action="store_true",
                         help="with --view: wait before the first state")  # fmt: skip
+    parser.add_argument("--generated", action="store_true",
+                        help="with --view: also show the states that `timeout`, `retry` and"
+                        " `for_each` add")  # fmt: skip
     browser(parser)
     parser.add_argument("--expect", metavar="OUTCOME",
                         help="fail if the outcome is another one")  # fmt: skip
@@ -129,6 +140,8 @@ def run_command(arguments: Namespace) -> int:
         return usage("--ros-args needs --ros")
     if arguments.view is None and arguments.view_paused:
         return usage("--view-paused needs --view")
+    if arguments.view is None and arguments.generated:
+        return usage("--generated needs --view")
     if arguments.view is not None and arguments.orders is not None:
         return usage("--view shows one run, --orders tries many: choose one")
     for option, path, is_ours in (
@@ -385,20 +398,19 @@ def play_orders(
     """
     from itertools import islice
 
-    from smachac.interpreter.behaviours import builtin_behaviour
     from smachac.interpreter.explore import explore
-    from smachac.interpreter.scenario import scenario_behaviour
     from smachac.interpreter.userdata import trace_value
     from smachac.ir.script_paths import script_paths
     from smachac.ir.secret_keys import secret_keys
     from smachac.runtime.tracing.writer import SECRET, shown_path
+    from smachac.sweep.play import played_behaviour
 
     paths = script_paths(machine.root)
     secret = secret_keys(machine).get(machine.root.name, ())
     ends: dict[str, list[InterpreterResult]] = {}
     orders = explore(
         machine,
-        lambda: scenario_behaviour(scenario, machine, builtin_behaviour(seed), seed),
+        lambda: played_behaviour(machine, scenario, seed),
         max_steps=max_steps,
     )
     for result in islice(orders, most):

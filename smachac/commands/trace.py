@@ -6,7 +6,15 @@ import argparse
 import sys
 from argparse import Namespace
 
-from smachac.commands.arguments import SCRIPT, as_path, colour, names, report_output, search_folders
+from smachac.commands.arguments import (
+    SCRIPT,
+    as_path,
+    colour,
+    generated_states,
+    names,
+    report_output,
+    search_folders,
+)
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
 from smachac.commands.swapped import swapped_arguments
 
@@ -15,6 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from smachac.ir.nodes import Machine
+    from smachac.ir.written import Written
     from smachac.verify.coverage import Coverage
     from smachac.verify.trace_report import JudgedTrace
     from smachac.verify.trace_statistics import TraceStatistics
@@ -58,6 +67,7 @@ def trace_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = TRACE_EXAMPLES
     parser.add_argument("action", choices=("check", "stats"), help="check: compare the traces with"
                         " the script; stats: count visits, durations and outcomes")  # fmt: skip
+    generated_states(parser)
     others = "; for `check` also a bag of rosbag2, for `stats` also the database of a sweep"
     _files(parser, TRACES + others, "text", "json")
 
@@ -81,7 +91,7 @@ def _files(parser: argparse.ArgumentParser, traces: str, *formats: str) -> None:
 
 def trace_command(arguments: Namespace) -> int:
     """Judge every trace, or count in them; the exit code."""
-    from smachac.ir.written import written
+    from smachac.ir.written import generated, written
     from smachac.report.terminal import on_one_line
     from smachac.sweep.database import DatabaseError
     from smachac.verify.coverage import script_coverage
@@ -93,13 +103,14 @@ def trace_command(arguments: Namespace) -> int:
     machine = _machine(arguments)
     if machine is None:
         return FINDINGS
+    view = (generated if arguments.generated else written)(machine)
     try:
         judged, taken, statistics = _judged(
-            arguments.traces, machine, conformance=arguments.action == "check"
+            arguments.traces, machine, view, conformance=arguments.action == "check"
         )
     except (UnreadableTraceError, DatabaseError) as error:
         return usage(str(error))
-    covered = script_coverage(taken.items, taken.covered, written(machine))
+    covered = script_coverage(taken.items, taken.covered, view)
     never = untaken(covered)
     bad = refusals(judged)
     if arguments.action == "check":
@@ -117,6 +128,7 @@ def stats_command(arguments: Namespace) -> int:
     """Predict the outcomes of a machine from its traces; the exit code."""
     from smachac.ir.outcome_names import successes
     from smachac.ir.traversal import outcome_names
+    from smachac.ir.written import written
     from smachac.report.terminal import on_one_line
     from smachac.sweep.database import DatabaseError
     from smachac.verify.statistics_page import statistics_html
@@ -140,7 +152,7 @@ def stats_command(arguments: Namespace) -> int:
         if name not in own:
             return usage(f"the machine has no outcome `{name}`", name, own)
     try:
-        judged, taken, statistics = _judged(arguments.traces, machine)
+        judged, taken, statistics = _judged(arguments.traces, machine, written(machine))
     except (UnreadableTraceError, DatabaseError) as error:
         return usage(str(error))
     bad = refusals(judged)
@@ -169,7 +181,7 @@ def _machine(arguments: Namespace) -> Machine | None:
 
 
 def _judged(
-    paths: list[Path], machine: Machine, *, conformance: bool = False
+    paths: list[Path], machine: Machine, view: Written, *, conformance: bool = False
 ) -> tuple[list[JudgedTrace], Coverage, TraceStatistics]:
     """Every trace, with what all of them cover and count. The runs of a database have no events,
     and so no `conformance`; those of a bag have no outcomes of states, and so nothing else. Raises
@@ -193,7 +205,7 @@ def _judged(
             if is_bag(path):
                 if not conformance:
                     raise UnreadableTraceError(path, "a bag has no outcomes of states to count")
-                judged += _judged_bag(path, machine, taken)
+                judged += _judged_bag(path, machine, taken, view)
                 continue
             if not path.is_file() and path.exists():
                 raise UnreadableTraceError(path, "it is not a regular file")
@@ -204,14 +216,14 @@ def _judged(
                 continue
             with path.open(encoding="utf-8", errors="replace", newline="\n") as stream:
                 lines = iter(partial(stream.readline, LONGEST_LINE + 1), "")
-                judged.append(judge_trace(machine, str(path), lines, record))
+                judged.append(judge_trace(machine, str(path), lines, record, view))
         except OSError as error:
             raise UnreadableTraceError(path, error.strerror or str(error)) from None
         statistics.end_trace()
     return judged, taken, statistics
 
 
-def _judged_bag(path: Path, machine: Machine, taken: Coverage) -> list[JudgedTrace]:
+def _judged_bag(path: Path, machine: Machine, taken: Coverage, view: Written) -> list[JudgedTrace]:
     """The runs in a bag, one trace for each node that reports on the machine. Raises
     UnreadableTraceError."""
     from smachac.commands.bag import BagError, read_statuses
@@ -232,7 +244,7 @@ def _judged_bag(path: Path, machine: Machine, taken: Coverage) -> list[JudgedTra
         names = listed(f"/{root}" for root in set().union(*roots.values()))
         raise UnreadableTraceError(path, f"it reports on {names}, not on `/{machine.root.name}`")
     names_of = {topic: str(path) if len(own) == 1 else f"{path} ({topic})" for topic in own}
-    return [judge_statuses(machine, names_of[topic], found[topic], taken) for topic in own]
+    return [judge_statuses(machine, names_of[topic], found[topic], taken, view) for topic in own]
 
 
 def _is_database(path: Path) -> bool:

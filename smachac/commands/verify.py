@@ -12,6 +12,7 @@ from smachac.commands.arguments import (
     as_path,
     colour,
     count,
+    generated_states,
     names,
     report_output,
     search_folders,
@@ -85,6 +86,7 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
         "--seed", type=seed, default=0, help="seed of the random paths (default: 0)"
     )
     report_output(parser, "text", "json")
+    generated_states(parser)
     search_folders(parser)
     colour(parser)
 
@@ -92,6 +94,7 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
 def verify_command(arguments: Namespace) -> int:
     """Compare each target with the interpreter; the exit code."""
     from smachac.driver import analyse_script
+    from smachac.ir.written import generated, written
     from smachac.targets.cpp.project import project
     from smachac.verify import verify
     from smachac.verify.result import render_json, render_text
@@ -128,6 +131,7 @@ def verify_command(arguments: Namespace) -> int:
                 files={target: str(path) for target, path in files.items()},
                 most=arguments.paths,
                 seed=arguments.seed,
+                view=generated if arguments.generated else written,
                 progress=progress,
             )
     except UnplayableError as error:

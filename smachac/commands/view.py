@@ -10,14 +10,22 @@ import threading
 import time
 from argparse import Namespace
 from contextlib import contextmanager, suppress
+from functools import partial
 
-from smachac.commands.arguments import SCRIPT, as_path, colour, machine_name, search_folders
+from smachac.commands.arguments import (
+    SCRIPT,
+    as_path,
+    colour,
+    generated_states,
+    machine_name,
+    search_folders,
+)
 from smachac.commands.output import OK, print_report, usage
 from smachac.commands.python_files import MachineError, is_python, one_analysis
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
     from pathlib import Path
 
     from smachac.diagnostics.diagnostic import Report
@@ -31,12 +39,14 @@ if TYPE_CHECKING:
     from smachac.view.picture import Picture
     from smachac.view.ros_topic import Topic
     from smachac.view.server import Do, Film, ViewServer
+    from smachac.view.simulation import Simulation
     from smachac.view.statuses import StatusEvents
     from smachac.view.trace_file import TraceText
 
 EXAMPLES = """\
 examples:
-  smachac view main.yml                        the picture, drawn again when a file changes
+  smachac view main.yml                        the picture, drawn again when a file changes;
+                                               edit it, simulate it, save scenarios
   smachac view machine.py                      the machine in a Python file
   smachac view main.yml --generated            with the states that fields as `retry` add
   smachac view main.yml --attach run.jsonl     replay a trace; follow it while it is written
@@ -82,9 +92,7 @@ def view_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--port", type=port, default=0, metavar="PORT",
                         help="the port of the page (default: one that is free)")  # fmt: skip
     browser(parser)
-    parser.add_argument("--generated", action="store_true",
-                        help="also show the states that `timeout`, `retry` and `for_each` add"
-                        )  # fmt: skip
+    generated_states(parser)
     machine_name(parser)
     search_folders(parser)
     colour(parser)
@@ -195,17 +203,32 @@ def _serve(arguments: Namespace, attached: Path | Topic | None, film: Film | Non
     from smachac.targets.html.page import FILM_ID
     from smachac.view.feed import Feed
     from smachac.view.picture import Picture
+    from smachac.view.simulation import Simulation
 
     feed = Feed()
-    is_edited = attached is None and not is_python(arguments.script) and not arguments.generated
+    is_script = attached is None and not is_python(arguments.script)
+    is_edited = is_script and not arguments.generated
     data = None if film is None else {FILM_ID: {"type": film.type, "rate": RATE, "speed": SPEED}}
     view = generated if arguments.generated else written
-    picture = Picture(feed, arguments.script.stem, editable=is_edited, data=data, view=view)
-    script = ViewedScript(arguments, picture)
+    picture = Picture(
+        feed,
+        arguments.script.stem,
+        editable=is_edited,
+        simulated=is_script,
+        data=data,
+        view=view,
+    )
+    simulation = None
+    if is_script:
+        save = partial(save_scenario, arguments.script)
+        simulation = Simulation(feed, str(arguments.script), save, view)
+    script = ViewedScript(arguments, picture, simulation)
     edits = edits_of_script(script) if is_edited else None
     try:
         script.check()
-        server = _server(arguments.port, picture, feed, edits=edits, film=film)
+        server = _server(
+            arguments.port, picture, feed, edits=edits, simulation=simulation, film=film
+        )
     except MachineError as error:
         return usage(str(error), error.word, error.known)
     except PortError as error:
@@ -248,12 +271,44 @@ def edits_of_script(script: ViewedScript) -> Edits:
     return Edits(arguments.script, arguments.scripts, arguments.templates, script.write)
 
 
+def save_scenario(script: Path, name: str, text: Callable[[str], str]) -> str:
+    """Write a scenario into the folder `scenarios` beside a script, unless another one has that
+    name; its path. `text` makes its text from the path. Raises ActionError."""
+    from smachac.commands.files import changed_files, present_files, write_files
+    from smachac.commands.writing import PartlyWrittenError
+    from smachac.view.server import ActionError
+
+    place = f"scenarios/{name}"
+    path = str(script.parent / place)
+    files = {place: text(path)}
+    try:
+        if present_files(script.parent, files):
+            if changed_files(script.parent, files):
+                raise ActionError(f"{path} exists and is another scenario: choose another name")
+            return path
+        write_files(script.parent, files)
+    except (OSError, PartlyWrittenError) as error:
+        raise ActionError(f"cannot write {path}: {error}") from None
+    return path
+
+
+def _simulated(machine: Machine | None, report: Report) -> Machine | None:
+    """The machine if it can be simulated: its errors, if any, are those of the code of states."""
+    from smachac.diagnostics.diagnostic import has_errors
+    from smachac.driver import without_class_errors
+
+    return None if has_errors(without_class_errors(report)) else machine
+
+
 class ViewedScript:
     """A script on disk: checked again when one of its files changes, and after each edit."""
 
-    def __init__(self, arguments: Namespace, picture: Picture) -> None:
+    def __init__(
+        self, arguments: Namespace, picture: Picture, simulation: Simulation | None = None
+    ) -> None:
         from smachac.frontend.files import Disk
 
+        self._simulation = simulation
         self.arguments = arguments
         self._picture = picture
         self._disk = Disk()
@@ -298,6 +353,8 @@ class ViewedScript:
         machine, report = self._read()
         self._known = stamps({str(path), *disk.searched_files()})
         self._picture.update(machine, report)
+        if self._simulation is not None:
+            self._simulation.use(_simulated(machine, report))
         shown = [item for item in report if machine is None or item.severity is Severity.ERROR]
         print_report(shown, self.arguments, sys.stderr)
 
@@ -436,10 +493,11 @@ def _server(
     feed: Feed,
     control: Control | None = None,
     edits: Edits | None = None,
+    simulation: Simulation | None = None,
     film: Film | None = None,
 ) -> ViewServer:
-    """A server for a picture and, with a control, for a run; with edits, for those; with a film.
-    Raises PortError."""
+    """A server for a picture and, with a control, for a run; with edits or a simulation, for those;
+    with a film. Raises PortError."""
     from smachac.view.control import ControlError
     from smachac.view.server import ActionError, ViewServer
 
@@ -457,6 +515,8 @@ def _server(
     actions: dict[str, Do] = {"/control": act}
     if edits is not None:
         actions |= {"/edit": edits.edit, "/undo": edits.undo, "/types": edits.types}
+    if simulation is not None:
+        actions["/simulate"] = simulation.act
     try:
         return ViewServer(number, picture.page, feed, actions, name=picture.name, film=film)
     except OSError as error:
@@ -522,7 +582,7 @@ class RunView:
 @contextmanager
 def run_view(arguments: Namespace, machine: Machine, report: Report) -> Iterator[RunView]:
     """The view of a run with `--view`. Raises PortError."""
-    from smachac.ir.written import written
+    from smachac.ir.written import generated, written
     from smachac.view.control import Control
     from smachac.view.feed import Feed
     from smachac.view.live import LiveTrace
@@ -530,8 +590,9 @@ def run_view(arguments: Namespace, machine: Machine, report: Report) -> Iterator
 
     feed = Feed()
     trace = LiveTrace(feed)
-    control = Control(written(machine), trace.send, paused=arguments.view_paused)
-    picture = Picture(feed, machine.root.name)
+    states = generated if arguments.generated else written
+    control = Control(states(machine), trace.send, paused=arguments.view_paused)
+    picture = Picture(feed, machine.root.name, view=states)
     picture.update(machine, report)
     server = _server(arguments.view, picture, feed, control)
     trace.send(control.status())

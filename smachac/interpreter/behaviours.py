@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable
+from typing import Literal
 
 from smachac.interpreter.result import Behaviour
 from smachac.interpreter.userdata import BehaviourError, Userdata, call_function, python_data
@@ -131,6 +132,15 @@ _BEHAVIOURS: dict[str, Callable[[str, Leaf, int, Userdata], str]] = {
 
 _MADE_OF_FUNCTIONS = frozenset(["CallbacksState", "ConditionalOutcomeState"])
 """The built-in state types that do nothing but call functions of the script."""
+
+
+def own_code(leaf: Leaf) -> Literal["functions", "time", "steps", ""]:
+    """What the interpreter runs of a leaf; empty for one that only ends."""
+    if is_made_of_functions(leaf) or variable_of(leaf, "callbacks") is not None:
+        return "functions"
+    if leaf.built_in == "SleepState":
+        return "time"
+    return "steps" if leaf.built_in == "ScriptedState" and variable(leaf, "steps") else ""
 
 
 def is_made_of_functions(leaf: Leaf) -> bool:

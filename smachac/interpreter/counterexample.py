@@ -8,7 +8,6 @@ from typing import NamedTuple, Protocol
 from smachac.interpreter.interpreter import Interpreter
 from smachac.interpreter.result import Event, SchedulingChoice
 from smachac.interpreter.scenario import (
-    PlainStep,
     Scenario,
     ScenarioStep,
     perform_step,
@@ -48,22 +47,14 @@ class Replay(NamedTuple):
     followed: bool
 
     @property
-    def rows(self) -> dict[str, list[PlainStep]]:
-        """The steps as plain data."""
-        return {
-            path: [PlainStep(step.outcome or "", {}, False, step.error, step.stop) for step in row]
-            for path, row in self.scenario.steps.items()
-        }
-
-    @property
     def text(self) -> str:
         """The scenario as a file for `smachac run --mock`."""
-        return scenario_text(self.rows)
+        return scenario_text(self.scenario.steps)
 
     @property
     def flow(self) -> str:
         """The scenario on one line."""
-        return scenario_line(self.rows)
+        return scenario_line(self.scenario.steps)
 
 
 class _Guided(Scheduler):
@@ -115,13 +106,13 @@ def replay(machine: Machine, visits: Sequence[Visited], again: int = -1) -> Repl
     interpreter = Interpreter(machine, behave, events.append, max_steps=20 * len(rounds) + 10_000)
     interpreter.schedule = _Guided(rounds, done)
     result = interpreter.execute()
-    schedule = tuple(_short(choice) for choice in result.choices)
+    schedule = tuple(turn_name(choice) for choice in result.choices)
     scenario = Scenario(steps={path: tuple(row) for path, row in steps.items()})
     followed = all(right) and len(right) == len(rounds)
     return Replay(scenario, schedule, tuple(events), followed)
 
 
-def _short(choice: SchedulingChoice) -> str:
+def turn_name(choice: SchedulingChoice) -> str:
     """The name of the branch that continues, or its path if another branch has that name."""
     name = choice.taken.rpartition("/")[2]
     same = [path for path in choice.ready if path.endswith(f"/{name}")]

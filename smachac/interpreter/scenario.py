@@ -7,16 +7,17 @@ import copy
 import json
 import math
 import random
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.diagnostics.spelling import MOST_EXPLAINED, is_plain
 from smachac.diagnostics.wording import listed
-from smachac.interpreter.behaviours import preemptible
+from smachac.interpreter.behaviours import own_code, preemptible
 from smachac.interpreter.result import Behaviour
 from smachac.interpreter.userdata import BehaviourError, Userdata
+from smachac.ir.durations import in_one_unit, seconds
 from smachac.ir.leaf import default_outcome
 from smachac.ir.nodes import Iterator, Leaf, Machine
 from smachac.ir.outcome_names import PREEMPTED
@@ -31,8 +32,9 @@ class ScenarioStep:
 
     Without an outcome the leaf ends with its default outcome. `stop`: the visit begins with a
     request to stop for the whole machine. `wait`: the leaf first waits for a request to stop.
-    `error`: the leaf raises an error with this message instead. `chances`: outcomes with their
-    probabilities, one of which is drawn at each visit and takes the place of `outcome`.
+    `after`: the time that the visit takes, in seconds. `error`: the leaf raises an error with this
+    message instead. `chances`: outcomes with their probabilities, one of which is drawn at each
+    visit and takes the place of `outcome`. `run`: the leaf behaves as without a step.
     """
 
     outcome: str | None = None
@@ -41,17 +43,24 @@ class ScenarioStep:
     wait: bool = False
     error: str = ""
     stop: bool = False
+    after: float = 0.0
+    run: bool = False
 
 
 STEP_FIELDS: Mapping[str, str] = {
     "outcome": "The outcome it ends with, or the probability of each of several outcomes; without"
     " one, its default outcome.",
     "set": "The userdata keys that it writes: {width: 0.05}.",
+    "after": "The time that it takes: 30 s.",
     "wait": "It first waits for a request to stop.",
     "error": "It raises an error with this message.",
     "stop": "The visit begins with a request to stop for the whole machine.",
+    "run": "It runs its own functions, or waits its own time, as a state without steps.",
 }
 """The fields of a step in a scenario file, with their descriptions."""
+
+OWN_CODE = ("run", "stop")
+"""The fields of a step that runs the code of its state."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,19 +68,37 @@ class Scenario:
     """The steps of leaves by path. Visit n performs step n; the last step repeats.
 
     A path is that of the script (docs/language.md, Paths) or the full one, and may be shortened to
-    its end (`GRASP`, `PICK/GRASP`) if only one leaf has that end.
+    its end (`GRASP`, `PICK/GRASP`) if only one leaf has that end. `fill`: output keys that a step
+    does not write get values by their types.
     """
 
     steps: Mapping[str, tuple[ScenarioStep, ...]]
+    fill: bool = False
+
+
+Fill = Callable[[str, Leaf, str, int], Sequence[tuple[str, object]]]
+"""The values that a leaf writes by their types: from its path, itself, its outcome and the number
+of its visit, from 1."""
+
+SCENARIO_FIELDS: Mapping[str, str] = {
+    "states": "The steps of states, by path; the last step repeats.",
+    "fill": "Output keys that a step does not set get values by their types.",
+}
+"""The fields of a scenario file, with their descriptions."""
 
 
 def scenario_behaviour(
-    scenario: Scenario, machine: Machine, otherwise: Behaviour, seed: int = 0
+    scenario: Scenario,
+    machine: Machine,
+    otherwise: Behaviour,
+    seed: int = 0,
+    fill: Fill | None = None,
 ) -> Behaviour:
     """A behaviour that follows a scenario; leaves without steps follow `otherwise`.
 
-    `seed` is that of outcomes with probabilities; each leaf has random numbers of its own. Raises
-    ValueError for a path that names no leaf, or several.
+    `seed` is that of outcomes with probabilities; each leaf has random numbers of its own. With
+    `fill`, leaves that do not run their own code write all their outputs. Raises ValueError for a
+    path that names no leaf, or several.
     """
     by_path = _by_path(scenario, machine)
     others = preemptible(otherwise)
@@ -79,23 +106,42 @@ def scenario_behaviour(
 
     def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
         steps = by_path.get(path)
-        if not steps:
+        if not steps and (fill is None or own_code(leaf)):
             return others(path, leaf, visit, userdata)
+        steps = steps or (ScenarioStep(),)
         step = steps[min(visit, len(steps)) - 1]
         if step.chances:
             if path not in sources:
                 sources[path] = random.Random(f"{seed}/{path}")
             outcomes, weights = zip(*step.chances, strict=True)
             step = replace(step, outcome=sources[path].choices(outcomes, weights)[0])
-        if step.stop:
-            userdata.stop_machine()
-        return perform_step(step, leaf, userdata)
+        if fill is not None:
+            outcome = step.outcome if step.outcome is not None else default_outcome(leaf)
+            writes = {**dict(fill(path, leaf, outcome, visit)), **dict(step.writes)}
+            step = replace(step, writes=tuple(writes.items()))
+        return play_step(step, others, path, leaf, visit, userdata)
 
     return behave
 
 
+def play_step(
+    step: ScenarioStep,
+    otherwise: Behaviour,
+    path: str,
+    leaf: Leaf,
+    visit: int,
+    userdata: Userdata,
+) -> str:
+    """Perform one step of a leaf, or what it does `otherwise`; the outcome."""
+    if step.stop:
+        userdata.stop_machine()
+    if step.run:
+        return otherwise(path, leaf, visit, userdata)
+    return perform_step(step, leaf, userdata)
+
+
 def perform_step(step: ScenarioStep, leaf: Leaf, userdata: Userdata) -> str:
-    """Perform one step of a leaf, without its `stop`; the outcome."""
+    """Perform one step of a leaf, without its `stop` and `run`; the outcome."""
     able = PREEMPTED in outcome_names(leaf)
     if userdata.preempted and able:
         userdata.service_preempt()
@@ -104,6 +150,7 @@ def perform_step(step: ScenarioStep, leaf: Leaf, userdata: Userdata) -> str:
         userdata.wait_for_stop()
         if able:
             return PREEMPTED
+    userdata.sleep(step.after)
     if step.error:
         raise BehaviourError(step.error)
     for key, value in step.writes:
@@ -112,7 +159,7 @@ def perform_step(step: ScenarioStep, leaf: Leaf, userdata: Userdata) -> str:
 
 
 class PlainStep(NamedTuple):
-    """A step as plain data, for generated programs."""
+    """A step as plain data, for generated programs, which have no `after` and `run`."""
 
     outcome: str
     writes: dict[str, object]
@@ -139,47 +186,53 @@ def plain_steps_by_path(scenario: Scenario, machine: Machine) -> dict[str, list[
     return rows
 
 
-def scenario_text(rows: Mapping[str, Sequence[PlainStep]]) -> str:
-    """A scenario as a file for `smachac run --mock`."""
-    lines = ["states:"]
+def scenario_text(rows: Mapping[str, Sequence[ScenarioStep]]) -> str:
+    """A scenario as a file for `smachac run --mock`. Steps with `chances` are not possible."""
+    lines = ["states:" if rows else "states: {}"]
     for path, row in rows.items():
         steps = [_short(_step(step)) for step in row]
         if len(steps) == 1:
-            lines.append(f"  {_flow(path)}: {steps[0]}")
+            lines.append(f"  {flow_text(path)}: {steps[0]}")
         else:
-            lines += [f"  {_flow(path)}:", *(f"    - {step}" for step in steps)]
+            lines += [f"  {flow_text(path)}:", *(f"    - {step}" for step in steps)]
     return "\n".join(lines) + "\n"
 
 
-def scenario_line(rows: Mapping[str, Sequence[PlainStep]]) -> str:
+def scenario_line(rows: Mapping[str, Sequence[ScenarioStep]]) -> str:
     """A scenario on one line, with steps that are only an outcome as short as possible."""
     states = {path: [_short(_step(step)) for step in row] for path, row in rows.items()}
-    parts = (f"{_flow(path)}: [{', '.join(steps)}]" for path, steps in states.items())
+    parts = (f"{flow_text(path)}: [{', '.join(steps)}]" for path, steps in states.items())
     return f"{{states: {{{', '.join(parts)}}}}}"
 
 
-def _flow(value: object) -> str:
+def flow_text(value: object) -> str:
     """A value as YAML on one line, with quotes only where they are needed."""
     match value:
         case dict():
-            return f"{{{', '.join(f'{_flow(key)}: {_flow(value[key])}' for key in value)}}}"
+            return f"{{{', '.join(f'{flow_text(key)}: {flow_text(value[key])}' for key in value)}}}"
         case list() | tuple():
-            return f"[{', '.join(map(_flow, value))}]"
+            return f"[{', '.join(map(flow_text, value))}]"
         case str() if is_plain(value):
             return value
+        case float() if not math.isfinite(value):
+            return ".nan" if math.isnan(value) else ".inf" if value > 0 else "-.inf"
     return quoted(value)
 
 
 def _short(step: dict[str, object]) -> str:
-    return _flow(step["outcome"] if [*step] == ["outcome"] else step)
+    return flow_text(step["outcome"] if [*step] == ["outcome"] else step)
 
 
-def _step(row: PlainStep) -> dict[str, object]:
-    step: dict[str, object] = {"stop": True} if row.stop else {}
-    if row.error:
-        return step | {"error": row.error}
-    step |= {"wait": True} if row.wait else {}
-    return step | {"outcome": row.outcome} | ({"set": row.writes} if row.writes else {})
+def _step(step: ScenarioStep) -> dict[str, object]:
+    data: dict[str, object] = {"stop": True} if step.stop else {}
+    if step.run:
+        return data | {"run": True}
+    data |= {"after": in_one_unit(step.after)} if step.after else {}
+    if step.error:
+        return data | {"error": step.error}
+    data |= {"wait": True} if step.wait else {}
+    data |= {"outcome": step.outcome} if step.outcome is not None else {}
+    return data | ({"set": dict(step.writes)} if step.writes else {})
 
 
 def quoted(value: object) -> str:
@@ -220,6 +273,7 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[Scenar
       CHECK: succeeded
       TIMER: {wait: true}
       WALK: [succeeded, {outcome: preempted, stop: true}]
+      CHARGE: {outcome: full, after: 2 h}
       LIFT: {outcome: {succeeded: 0.7, aborted: 0.3}}
     ```
     """
@@ -236,10 +290,14 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[Scenar
         help_ = next(filter(None, near), None) or f"write `states: {{{_example(leaves)}}}`"
         return Scenario(steps={}), [ScenarioProblem(message, help_)]
     problems.extend(
-        ScenarioProblem(f"unknown key `{key}`; a scenario has only `states`", f"remove `{key}`")
+        ScenarioProblem(
+            f"unknown key `{key}`; a scenario has `states` and `fill`", f"remove `{key}`"
+        )
         for key in data
-        if key != "states"
+        if key not in SCENARIO_FIELDS
     )
+    if not isinstance(data.get("fill", False), bool):
+        problems.append(ScenarioProblem("`fill` is true or false", "write `fill: true`"))
     names: dict[str, str] = {}
     for key, given in data["states"].items():
         name = str(key)
@@ -261,7 +319,7 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[Scenar
             problems.append(ScenarioProblem(f"`{name}` has no steps", help_, name))
         reader = _StepReader(leaves[path], name, problems)
         steps[path] = tuple(reader.step(entry, at) for at, entry in enumerate(entries, 1))
-    return Scenario(steps=steps), problems
+    return Scenario(steps=steps, fill=data.get("fill") is True), problems
 
 
 @dataclass(frozen=True, slots=True)
@@ -301,9 +359,14 @@ class _StepReader:
             if not self.place.unrestricted and key not in declared:
                 help_ = _name_help(str(key), declared)
                 self.problem(number, f"`{key}` is not one of its output keys", help_)
-        for key in ("wait", "stop"):
+        for key in ("wait", "stop", "run"):
             if not isinstance(entry.get(key, False), bool):
                 self.problem(number, f"`{key}` is true or false")
+        after = seconds(entry.get("after", 0))
+        if after is None:
+            self.problem(number, "`after` is a time, such as `30 s`, `5 min` or `2 h`")
+        if entry.get("run") is True and (others := [key for key in entry if key not in OWN_CODE]):
+            self.problem(number, f"a step with `run` has no `{others[0]}`")
         given = entry.get("outcome")
         chances = self.chances(given, number) if isinstance(given, dict) else ()
         single = "outcome" in entry and not isinstance(given, dict)
@@ -314,6 +377,8 @@ class _StepReader:
             wait=entry.get("wait") is True,
             error=str(entry.get("error", "")),
             stop=entry.get("stop") is True,
+            after=after or 0.0,
+            run=entry.get("run") is True,
         )
 
     def outcome(self, given: object, number: int) -> str:

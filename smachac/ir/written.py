@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Literal, NamedTuple
 
+from smachac.diagnostics.wording import quote
 from smachac.ir import graph, nodes
 from smachac.ir.graph import EdgeKind
 from smachac.ir.nodes import Concurrence, Container, Data, Expression, Leaf, Machine, Node, Value
@@ -28,6 +29,15 @@ one of its fields, or a state that such a field adds."""
 
 Round = Literal["try", "item"]
 _ROUNDS: Mapping[str, Round] = {"retry": "try", "for_each": "item"}
+
+_WORDS: Mapping[Role, str] = {
+    "timeout": "the time limit",
+    "timer": "the timer",
+    "retry": "the retry",
+    "try": "a try",
+    "pause": "the pause",
+    "for_each": "the loop",
+}
 
 BadgeField = Literal["timeout", "retry", "for_each", "catches"]
 
@@ -182,6 +192,21 @@ class Written:
         head, colon, outcome = full.rpartition(":")
         inside = self.parts.get(head)
         return f"{inside.state}{colon}{outcome}" if inside is not None else full
+
+    def traced_state(self, full: str) -> str:
+        """The path in traces of the written state of a full path, which may be followed by an
+        outcome (`:`). A path without a node is kept."""
+        part = self.parts.get(full)
+        if part is not None:
+            return self.states[part.state].parts[-1].shown
+        head, colon, outcome = full.rpartition(":")
+        return f"{self.traced_state(head)}{colon}{outcome}" if head in self.parts else full
+
+    def in_words(self, full: str) -> str:
+        """A node of the graph for a message: its state, or what the node is for its state."""
+        part = self.parts.get(full)
+        state = quote(self.traced_state(full))
+        return state if part is None or part.role == "state" else f"{_WORDS[part.role]} of {state}"
 
     def fitting_depth(self, most: int = FEW_BOXES) -> int:
         """The number of levels of containers, 1 or more, that a picture of at most `most` states

@@ -17,7 +17,7 @@ from smachac.frontend.schema import CONTAINERS, REQUIRED, VARIABLES, FieldOwner
 from smachac.frontend.text.unquoted import VARIABLE_SHAPES
 from smachac.frontend.types.interface_code import CLASS_FIELDS
 from smachac.frontend.types.value_facts import NAMES
-from smachac.interpreter.scenario import STEP_FIELDS
+from smachac.interpreter.scenario import SCENARIO_FIELDS, STEP_FIELDS
 from smachac.ir.nodes import FunctionResult, KeyRole, StateKind, VariableRole
 from smachac.ir.types import MOST_BOUND, WORDS
 from smachac.pysource.ros_names import ROS_VERSIONS
@@ -362,6 +362,8 @@ def scenario_schema() -> Schema:
         "outcome": {"anyOf": [outcome, chances]},
         "set": {"type": ["object", "null"]},
         "error": {},
+        "after": {"type": ["string", "number"]},
+        "run": {"type": "boolean", "default": False},
         "wait": {"type": "boolean", "default": False},
         "stop": {"type": "boolean", "default": False},
     }
@@ -387,9 +389,10 @@ def scenario_schema() -> Schema:
         "additionalProperties": False,
         "properties": {
             "states": {
-                "description": "The steps of states, by path; the last step repeats.",
+                "description": SCENARIO_FIELDS["states"],
                 "type": "object",
                 "additionalProperties": steps,
-            }
+            },
+            "fill": {"description": SCENARIO_FIELDS["fill"], "type": "boolean", "default": False},
         },
     }

@@ -45,14 +45,23 @@ def container_type(name: ContainerKind) -> StateType:
 
 
 def usable_types(library: Library) -> Iterator[tuple[StateType, bool]]:
-    """The state types that a script can name, by name, and whether they are of the user. A built-in
-    template without an interface is none: only other templates include it."""
+    """The state types that a script can name, by name, and whether they are of the user. A template
+    without an interface is none if it is built-in, or if it makes no state: only other templates
+    include it."""
     for name in sorted(library.template_names()):
         own = any(library.own_template(f"{name}{end}") for end in (".yml", ".tpl.py", ".tpl"))
-        if own or library.template(f"{name}.yml"):
-            type_ = find_state_type(name, library, [])
-            if type_ is not None:
-                yield type_, own
+        has_interface = library.template(f"{name}.yml") is not None
+        type_ = find_state_type(name, library, []) if own or has_interface else None
+        if type_ is not None and (has_interface or _makes_state(type_)):
+            yield type_, own
+
+
+def _makes_state(type_: StateType) -> bool:
+    """Whether the template of a type without an interface prints a state, has its class, or extends
+    one with an interface."""
+    facts = type_.class_facts
+    has_class = facts is not None and (facts.is_function or facts.execute is not None)
+    return has_class or type_.prints_itself or not type_.open
 
 
 def list_text(known: Sequence[Known]) -> str:

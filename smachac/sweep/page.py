@@ -21,7 +21,8 @@ STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; color: var(--text); background: var(--page);
   max-width: 76rem; margin: 1.5rem auto; padding: 0 1rem; }
 h1 { font-size: 1.5rem; } h2 { font-size: 1.1rem; margin-top: 1.6rem; }
-h3 { font-size: 1rem; margin: .9rem 0 .2rem; }
+h3 { font-size: 1rem; margin: .9rem 0 .2rem; } h3 .dim { font-weight: 400; margin-left: .6rem; }
+.again { display: flex; flex-wrap: wrap; gap: 0 1rem; }
 table { border-collapse: collapse; } td, th { text-align: left; padding: .15rem 1rem .15rem 0;
   border-bottom: 1px solid var(--line); vertical-align: top; }
 td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; }
@@ -39,11 +40,12 @@ code { font-size: .9em; overflow-wrap: anywhere; }
 .bad { background: var(--bad); }
 svg { display: block; max-width: 100%; height: auto; } svg text { font-size: 12px; }
 .axis { stroke: var(--dim); fill: none; } .grid { stroke: var(--line); }
-ol.way { list-style: none; display: flex; flex-wrap: wrap; gap: .3rem 1.5rem; padding: 0;
-  margin: .3rem 0; }
+ol.way { list-style: none; display: flex; flex-wrap: wrap; align-items: center; gap: .3rem 1.5rem;
+  padding: 0; margin: .3rem 0; }
 ol.way li { position: relative; border: 1px solid var(--line); border-radius: 7px;
   background: var(--box); padding: .1rem .6rem; font-weight: 600; font-size: .9rem; }
-ol.way li + li::before { content: "\\2192"; position: absolute; left: -1.25rem; color: var(--dim); }
+ol.way li + li::before { content: "\\2192"; position: absolute; left: -1.25rem; top: 50%;
+  translate: 0 -50%; color: var(--dim); }
 ol.way small { display: block; font-weight: 400; color: var(--dim); }
 ol.way li.failed { border-color: var(--bad); background: var(--soft); }
 ol.way li.failed small, ol.way li.end { color: var(--bad); }
@@ -278,10 +280,9 @@ def _failure(group: dict[str, Any]) -> str:
     more = len(group["seeds"]) - MOST_SEEDS
     seeds += f" and {more} more" if more > 0 else ""
     return (
-        f"<h3>{_text(first_text(group))}</h3>"
-        f"<div>{_text(count_text(group))}</div>{_way(group)}"
-        f"<code>{_text(group['replay'])}</code>"
-        f'<details class="dim"><summary>seeds</summary>{seeds}</details>'
+        f'<h3>{_text(first_text(group))} <span class="dim">{_text(count_text(group))}</span></h3>'
+        f'{_way(group)}<div class="again"><code>{_text(group["replay"])}</code>'
+        f'<details class="dim"><summary>seeds</summary>{seeds}</details></div>'
     )
 
 

@@ -6,12 +6,16 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from smachac.interpreter.interpreter import MAX_STEPS
+from smachac.interpreter.result import Behaviour
 from smachac.interpreter.scenario import Scenario
 from smachac.ir.nodes import Machine
 from smachac.runtime.tracing.gate import Gate
 
 Event = dict[str, Any]
 
+
+FILL_HELP = "write it with `set` in an earlier step, or `fill: true` in the scenario"
+"""What to do about a key that no state has written."""
 
 SHOWN_STATES = 6
 """The most states of a cycle that a message names."""
@@ -41,14 +45,12 @@ def play(
     `gate` lets a debugger stop the run between two states. `max_steps` is the most states that it
     enters.
     """
-    from smachac.interpreter.behaviours import builtin_behaviour
     from smachac.interpreter.interpreter import run
-    from smachac.interpreter.scenario import scenario_behaviour
     from smachac.interpreter.scheduler import ScheduleError
     from smachac.ir.script_paths import script_paths
     from smachac.runtime.tracing.writer import shown_path
 
-    behaviour = scenario_behaviour(scenario, machine, builtin_behaviour(seed), seed)
+    behaviour = played_behaviour(machine, scenario, seed)
     paths = script_paths(machine.root)
     full = {shown: path for path, shown in paths.items()}
     turns = None if schedule is None else [full.get(turn, turn) for turn in schedule]
@@ -73,9 +75,21 @@ def play(
             words += f": it repeats {', '.join([*round_[:SHOWN_STATES], *more])}"
         span = failure.span
         place = f"\n  --> {span}" if span.source.text else ""
-        raise FailedError(f"{words}{place}", failure.cycle)
+        is_filled = failure.kind != "missing-key" or scenario.fill
+        help_ = "" if is_filled else f"\nhelp: {FILL_HELP}"
+        raise FailedError(f"{words}{place}{help_}", failure.cycle)
     assert result.outcome is not None
     return result.outcome
+
+
+def played_behaviour(machine: Machine, scenario: Scenario, seed: int) -> Behaviour:
+    """The behaviour of the leaves of a machine that plays a scenario."""
+    from smachac.interpreter.behaviours import builtin_behaviour
+    from smachac.interpreter.scenario import scenario_behaviour
+    from smachac.verify.sample_values import SampleValues
+
+    fill = SampleValues(machine).outputs if scenario.fill else None
+    return scenario_behaviour(scenario, machine, builtin_behaviour(seed), seed, fill)
 
 
 def _shown(observe: Callable[[Event], None], paths: Mapping[str, str]) -> Callable[[Event], None]:

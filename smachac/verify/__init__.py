@@ -14,8 +14,9 @@ from contextlib import ExitStack
 
 from smachac.ir.nodes import Machine
 from smachac.ir.script_paths import script_paths
+from smachac.ir.written import Written, written
 from smachac.runtime.tracing.writer import with_shown_paths
-from smachac.verify.coverage import reasons
+from smachac.verify.coverage import item_in_script, reasons, script_coverage
 from smachac.verify.generate import PathGenerator
 from smachac.verify.paths import Path
 from smachac.verify.python_values import with_samples
@@ -31,12 +32,14 @@ def verify(
     files: Mapping[str, str] = {},
     most: int | None = None,
     seed: int = 0,
+    view: Callable[[Machine], Written] = written,
     progress: Callable[[str], None] = lambda text: None,
 ) -> Verdict:
     """Run the paths of a machine on every target, up to the first difference of each.
 
     `files` are the names of the files that players play, by target, where these are on disk. `most`
-    and `seed` are those of `PathGenerator`. `progress` is called often, with how far the work is.
+    and `seed` are those of `PathGenerator`. `view` has the states of the coverage. `progress` is
+    called often, with how far the work is.
     Exceptions of players are not caught.
     """
     machine, samples = with_samples(machine)
@@ -51,17 +54,19 @@ def verify(
         _first_difference(machine, target, player, paths, cases, progress)
         for target, player in players.items()
     ]
-    items, missing = runner.coverage.items, runner.coverage.missing()
-    why = reasons(machine, missing, runner.planner)
-    shown = script_paths(machine.root)
+    coverage = runner.coverage
+    states = view(machine)
+    shown = script_coverage(coverage.items, coverage.covered, states)
+    why = reasons(machine, coverage.missing(), runner.planner)
+    reason = {item_in_script(item, states): why[item] for item in reversed(why)}
     return Verdict(
         script=script,
         targets=tuple(players),
         files=files,
         paths=Counter(path.kind for path in paths),
-        taken=len(items) - len(missing),
-        total=len(items),
-        missing=[(item.renamed(shown), items[item], why[item]) for item in missing],
+        taken=len(shown.covered),
+        total=len(shown.items),
+        missing=[(item, shown.items[item], reason[item]) for item in shown.missing()],
         left_out=generator.left_out,
         disagreements=[disagreement for disagreement in found if disagreement is not None],
     )
@@ -92,7 +97,7 @@ def _first_difference(
                     expected=[with_shown_paths(event, shown) for event in difference.first],
                     found=[with_shown_paths(event, shown) for event in difference.second],
                     at=difference.at,
-                    rows={shown.get(path, path): row for path, row in case.rows.items() if row},
+                    steps={shown.get(full, full): row for full, row in path.scenario.steps.items()},
                     live=path.live,
                 )
     return None

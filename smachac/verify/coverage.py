@@ -181,7 +181,8 @@ def item_in_script(item: CoverageItem, view: Written) -> CoverageItem | None:
         is_written = view.is_whole(item.path) or (item.kind == "loop" and part.begins is not None)
     if not is_written:
         return None
-    return item._replace(path=part.state, target=view.state(item.target))
+    target = view.traced_state(item.target)
+    return item._replace(path=view.traced_state(item.path), target=target)
 
 
 class Reason(NamedTuple):

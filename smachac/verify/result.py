@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from smachac.diagnostics.source import Span
-from smachac.interpreter.scenario import PlainStep, quoted, scenario_text
+from smachac.interpreter.scenario import ScenarioStep, quoted, scenario_text
 from smachac.records import dataclass
 from smachac.report.json import json_text
 from smachac.report.terminal import on_one_line
@@ -34,7 +34,7 @@ class Disagreement:
     expected: Sequence[Event]
     found: Sequence[Event]
     at: int
-    rows: Mapping[str, Sequence[PlainStep]]
+    steps: Mapping[str, Sequence[ScenarioStep]]
     live: bool
 
 
@@ -76,7 +76,7 @@ def render_json(verdict: Verdict) -> str:
         "differences": [
             {"target": disagreement.target, "path": disagreement.path, "event": disagreement.at + 1,
              "expected": list(disagreement.expected), "found": list(disagreement.found),
-             "scenario": scenario_text(disagreement.rows)}
+             "scenario": scenario_text(disagreement.steps)}
             for disagreement in verdict.disagreements
         ],
     }  # fmt: skip
@@ -144,7 +144,7 @@ def _difference(each: Disagreement, played: str) -> Iterator[str]:
     if each.live:
         yield "# states that are not in it evaluate their expressions"
     yield ""
-    yield from scenario_text(each.rows).splitlines()
+    yield from scenario_text(each.steps).splitlines()
 
 
 def _event(event: Event) -> str:

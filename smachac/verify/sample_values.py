@@ -108,12 +108,12 @@ class SampleValues:
         here = {key for name, keys in leaf.writes if name == outcome for key in keys}
         number = 1 if path.startswith(self._contended) else self._numbers[path] + visit
         return tuple(
-            (key.name, sample_value(self._type(path, leaf, key.name), number))
+            (key.name, sample_value(self.type_of(path, leaf, key.name), number))
             for key in leaf.outputs
             if (key.name in here if key.name in bound else outcome != PREEMPTED)
         )
 
-    def _type(self, path: str, leaf: Leaf, key: str) -> Type:
+    def type_of(self, path: str, leaf: Leaf, key: str) -> Type:
         """The inferred type of the key in the container; if it is unknown, the type of the output.
 
         The child of an iterator sees the keys of the iterator under their own names

@@ -8,7 +8,6 @@ from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
 from smachac.interpreter.scenario import (
     Scenario,
-    plain_steps_by_path,
     scenario_behaviour,
     scenario_text,
 )
@@ -53,6 +52,5 @@ def _text(machine: Machine, scenario: Scenario, script: str, outcome: str) -> st
     written = {full: steps for full, steps in scenario.steps.items() if not paths[full].added}
     if _outcome(machine, Scenario(steps=written)) == outcome:
         scenario = Scenario(steps=written)
-    rows = plain_steps_by_path(scenario, machine)
     head = f"# smachac run {script} --mock FILE --expect {outcome}\n"
-    return head + scenario_text({paths[full].shown: row for full, row in rows.items() if row})
+    return head + scenario_text({paths[full].shown: row for full, row in scenario.steps.items()})

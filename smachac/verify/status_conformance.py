@@ -19,8 +19,8 @@ from smachac.diagnostics.wording import quote
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, Node
 from smachac.ir.outcome_names import PREEMPTED
-from smachac.ir.script_paths import script_paths
 from smachac.ir.traversal import ends_preempted, leads_to_child, outcome_names, walk
+from smachac.ir.written import Written
 from smachac.verify.coverage import Coverage, CoverageItem
 from smachac.verify.guidance import possible_leaf_outcomes
 from smachac.verify.trace_report import JudgedTrace
@@ -82,11 +82,11 @@ def in_order(statuses: Sequence[Status]) -> list[Status]:
 
 
 def judge_statuses(
-    machine: Machine, name: str, statuses: Iterable[Status], taken: Coverage
+    machine: Machine, name: str, statuses: Iterable[Status], taken: Coverage, view: Written
 ) -> JudgedTrace:
     """Judge the statuses of one run or more, in their order; `taken` receives the transitions that
-    they certainly take."""
-    acceptor = _Acceptor(machine, taken)
+    they certainly take, `view` has the states that messages name."""
+    acceptor = _Acceptor(machine, taken, view)
     events = 0
     fault: tuple[int, str, Span | None] | None = None
     for number, status in enumerate(statuses, 1):
@@ -116,10 +116,10 @@ class _Acceptor:
     ended since they were entered, `repeats` the ends of the children of iterators.
     """
 
-    def __init__(self, machine: Machine, taken: Coverage) -> None:
+    def __init__(self, machine: Machine, taken: Coverage, view: Written) -> None:
         self._nodes = dict(walk(machine.root))
         self._root = machine.root
-        self._shown = script_paths(machine.root)
+        self._view = view
         self._taken = taken
         self._items: dict[tuple[str, str, str], list[CoverageItem]] = {}
         for item in taken.items:
@@ -150,7 +150,7 @@ class _Acceptor:
             self._go_on(path, node, active)
 
     def _name(self, path: str) -> str:
-        return quote(self._shown.get(path, path))
+        return self._view.in_words(path)
 
     def _start(self, path: str, node: Container, active: tuple[str, ...]) -> None:
         parent, _, name = path.rpartition("/")
@@ -226,7 +226,7 @@ class _Acceptor:
             message = f"{self._name(left)} is left before its end"
             raise _NotAllowedError(message, child.span)
         if not found:
-            reached = self._shown.get(target, target)
+            reached = self._view.traced_state(target)
             what = quote(ended) if ended is not None else "no outcome"
             verb = "does not lead" if ended is not None else "leads"
             message = f"{what} of {self._name(left)} {verb} to {quote(reached)}"

@@ -20,6 +20,7 @@ from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, No
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.script_paths import script_paths
 from smachac.ir.traversal import ends_preempted, leads_to_child, outcome_names, walk
+from smachac.ir.written import Written, written
 from smachac.records import dataclass, field
 from smachac.runtime.tracing.writer import shown_path
 from smachac.verify.guidance import possible_leaf_outcomes
@@ -59,7 +60,7 @@ def first_violation(machine: Machine, events: Iterable[Event]) -> Violation | No
 
     Paths in the events are those that the script shows (ir/script_paths.py).
     """
-    acceptor = Acceptor(machine)
+    acceptor = Acceptor(machine, written(machine))
     for at, event in enumerate(events):
         violation = acceptor.accept(at, acceptor.full(event))
         if violation is not None:
@@ -70,15 +71,16 @@ def first_violation(machine: Machine, events: Iterable[Event]) -> Violation | No
 class Acceptor:
     """The runs that a machine allows, after the events of a trace so far.
 
-    `outcome` is that of the machine, or None if it has not ended; `finished` counts its runs.
+    `view` has the states that messages name. `outcome` is that of the machine, or None if it has
+    not ended; `finished` counts its runs.
     """
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: Machine, view: Written) -> None:
         self._root = machine.root
         self._nodes = dict(walk(machine.root))
         shown = script_paths(machine.root)
         self._full = {path: full for full, path in shown.items()}
-        self._shown = shown
+        self._view = view
         self._runs: dict[str, _Run] = {}
         self._asked: set[str] = set()
         self.outcome: str | None = None
@@ -114,7 +116,11 @@ class Acceptor:
         return None
 
     def _name(self, path: str) -> str:
-        return quote(self._shown.get(path, path))
+        return self._view.in_words(path)
+
+    def _target(self, to: str) -> str:
+        """The target of a transition: a state as a whole, or an outcome of a container."""
+        return quote(self._view.traced_state(to))
 
     def _run(self, path: str) -> _Run:
         run = self._runs.get(path)
@@ -169,7 +175,7 @@ class Acceptor:
         if not inside:
             return f"{entered}: {self._name(parent)} ends with `{name}`"
         kind = "initial" if run.previous is None else "next"
-        return f"{entered}: {self._name(f'{parent}/{name}')} is the {kind} state"
+        return f"{entered}: {self._target(f'{parent}/{name}')} is the {kind} state"
 
     def _exit(self, path: str, node: Node, event: Event) -> None:
         self._end(path, node, event["outcome"])
@@ -228,11 +234,10 @@ class Acceptor:
             for target, inside in targets
         }
         if event["to"] not in found:
-            to = shown_path(event["to"], self._shown)
-            right = " or ".join(f"`{shown_path(text, self._shown)}`" for text in sorted(found))
+            right = " or ".join(map(self._target, sorted(found)))
             raise _NotAllowedError(
-                f"{quote(outcome)} of {self._name(path)} leads to {quote(to)}, in the script to"
-                f" {right or 'nothing'}"
+                f"{quote(outcome)} of {self._name(path)} leads to {self._target(event['to'])},"
+                f" in the script to {right or 'nothing'}"
             )
         run.target = found[event["to"]]
 

@@ -10,6 +10,7 @@ from smachac.diagnostics.source import Span
 from smachac.diagnostics.wording import quote
 from smachac.interpreter.result import Event
 from smachac.ir.nodes import Machine
+from smachac.ir.written import Written
 from smachac.records import dataclass
 from smachac.report.json import json_text
 from smachac.report.terminal import on_one_line
@@ -76,14 +77,19 @@ def read_event(line: str) -> Event:
 
 
 def judge_trace(
-    machine: Machine, name: str, lines: Iterable[str], record: Callable[[Event], None]
+    machine: Machine,
+    name: str,
+    lines: Iterable[str],
+    record: Callable[[Event], None],
+    view: Written,
 ) -> JudgedTrace:
-    """Judge one trace; `record` receives its allowed events, with full paths.
+    """Judge one trace; `record` receives its allowed events, with full paths, `view` has the states
+    that messages name.
 
     A last line without a line break is the rest of a write that was interrupted; it may be torn. Of
     a line that is too long, `lines` may have only the first `LONGEST_LINE + 1` characters.
     """
-    acceptor = Acceptor(machine)
+    acceptor = Acceptor(machine, view)
     events = 0
     fault: tuple[int, str, Span | None] | None = None
     for number, line in enumerate(lines, 1):

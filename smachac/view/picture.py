@@ -20,8 +20,9 @@ class Picture:
     """The last machine of a script that has no error, and what is found in the script now.
 
     As long as there was no such machine, the picture is that of the machine as far as it can be
-    read, or an empty one with the name `name`. `editable`: the page can edit the script. `data` is
-    more data for the page, by element id; `view` are the states of a machine that are drawn.
+    read, or an empty one with the name `name`. `editable`: the page can edit the script,
+    `simulated`: it can simulate the machine. `data` is more data for the page, by element id;
+    `view` are the states of a machine that are drawn.
 
     Each model has a `revision`, greater than that of every model before it, also of one that
     another process has made before: a page gets models from the stream and from answers to edits,
@@ -34,13 +35,14 @@ class Picture:
         name: str,
         *,
         editable: bool = False,
+        simulated: bool = False,
         data: Mapping[str, object] | None = None,
         view: Callable[[Machine], Written] = written,
     ) -> None:
         self.name = name
         self._data = data
         self._view = view
-        self._editable = editable
+        self._editable, self._simulated = editable, simulated
         self._feed = feed
         self._lock = threading.Lock()
         self._is_good = False
@@ -83,6 +85,8 @@ class Picture:
         }
         if self._editable:
             model["editable"] = True
+        if self._simulated:
+            model["simulated"] = True
         if model == self._model:
             return False
         milliseconds = int(time.time() * 1000)

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.browser
 
+AXE = ROOT / "viewer/node_modules/axe-core/axe.min.js"
+
 SCRIPT = """\
 # The line.
 name: sm
@@ -395,7 +397,7 @@ def test_without_the_token_nothing_can_be_edited(
 def test_the_forms_are_accessible(page: Page, script: Path, colours: str) -> None:
     page.emulate_media(color_scheme=colours)  # type: ignore[arg-type]
     page.evaluate("theme => document.documentElement.dataset.theme = theme", colours)
-    page.evaluate((ROOT / "viewer/node_modules/axe-core/axe.min.js").read_text("utf-8"))
+    page.evaluate(AXE.read_text("utf-8"))
     form = choose(page, "sm/A", "Rename")
     titles = form.get_by_label("Operation", exact=True).locator("option").all_inner_texts()
     assert len(titles) == 5

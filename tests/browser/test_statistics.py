@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
+from smachac.commands.cli import main
 from smachac.driver import analyse_script
 from smachac.verify.coverage import Coverage
 from smachac.verify.statistics_page import statistics_html
 from smachac.verify.trace_statistics import TraceStatistics
 from tests.browser.pages import ROOT, SCREENSHOTS, Messages
+from tests.browser.scripts import limited_script
 from tests.browser.test_edit import serious
 
 if TYPE_CHECKING:
@@ -102,3 +105,32 @@ def test_an_outcome_that_objects_have_is_counted(browser: Browser, tmp_path: Pat
     page, _ = opened(browser, statistics_page(tmp_path, runs=2, lost=0))
     assert "constructor 0 %" in page.locator(".label text").all_text_contents()
     assert page.locator(".line.never").count() == 3
+
+
+WIDTH, HEIGHT = 1280, 800
+
+
+def test_the_page_of_a_sweep_of_50_states_has_at_most_three_screens(
+    browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    script, scenario, page_file = Path("big.yml"), Path("mock.yml"), Path("page.html")
+    script.write_text(limited_script(2, 25), "utf-8")
+    chances = {
+        f"big/M{machine}/S{state}": {"outcome": {"ok": 0.9, "bad": 0.1}}
+        for machine in range(2)
+        for state in range(25)
+    }
+    scenario.write_text(json.dumps({"states": chances}), "utf-8")
+    options = ["--runs", "40", "--jobs", "1", "--format", "html", "-o", str(page_file)]
+    main(["sweep", str(script), "--mock", str(scenario), *options])
+    for scheme in ("light", "dark"):
+        page = browser.new_page(viewport={"width": WIDTH, "height": HEIGHT}, color_scheme=scheme)
+        page.goto(page_file.resolve().as_uri())
+        page.frame_locator("iframe").locator("html[data-ready]").wait_for()
+        root = "document.documentElement"
+        height, width = page.evaluate(f"[{root}.scrollHeight, {root}.scrollWidth]")
+        assert height <= 3 * HEIGHT
+        assert width <= WIDTH
+        page.screenshot(path=SCREENSHOTS / f"sweep_{scheme}.png", full_page=True)
+        page.close()

@@ -53,12 +53,75 @@ def test_a_changed_run_is_not(recorded: Path, capsys: pytest.CaptureFixture[str]
     line = next(n for n, row in enumerate(text.splitlines(), 1) if '"to": "sm:lost"' in row)
     assert main(["trace", "check", "main.yml", "run.jsonl"]) == 1
     assert capsys.readouterr().out.startswith(
-        f"run.jsonl:{line}: `ok` of `sm/A` leads to `sm:lost`, in the script to `sm/B (retry)`"
+        f"run.jsonl:{line}: `ok` of `sm/A` leads to `sm:lost`, in the script to `sm/B`"
         " (main.yml:4)\n1 trace, 1 not allowed\n"
     )
     assert main(["trace", "check", "main.yml", "run.jsonl", "--format", "json"]) == 1
     (trace,) = json.loads(capsys.readouterr().out)["traces"]
     assert (trace["allowed"], trace["line"], trace["src"]) == (False, line, "main.yml:4")
+
+
+PARTS = """\
+name: sm
+outcomes: [done, lost]
+states:
+  - A:
+      template: ScriptedState
+      outcomes: [ok, bad]
+      timeout: 5 s
+      retry: {on: [bad], max: 2, delay: 1 s}
+      transitions: {ok: done, exhausted: lost, timeout: lost, preempted: lost}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message", "generated"),
+    [
+        (
+            '"path": "sm/A (timeout)", "outcome": "ok"',
+            '"path": "sm/A (timeout)", "outcome": "bad"',
+            "the time limit of `sm/A` ends with `bad`, in the script with `ok`",
+            "`sm/A (timeout)` ends with `bad`, in the script with `ok`",
+        ),
+        (
+            '"exit", "path": "sm/A", "outcome": "ok"',
+            '"exit", "path": "sm/A", "outcome": "lost"',
+            "`sm/A` ends with `lost`, which is none of its outcomes",
+            "`sm/A` ends with `lost`, which is none of its outcomes",
+        ),
+        (
+            '"path": "sm/A (try)", "outcome": "ok", "to": "sm/A (retry):ok"',
+            '"path": "sm/A (try)", "outcome": "ok", "to": "sm/A (retry):bad"',
+            "`ok` of a try of `sm/A` leads to `sm/A:bad`, in the script to `sm/A:ok`",
+            "`ok` of `sm/A (try)` leads to `sm/A (retry):bad`, in the script to `sm/A (retry):ok`",
+        ),
+        (
+            '"enter", "path": "sm/A (retry)"',
+            '"enter", "path": "sm/A (timeout)/TIMER"',
+            "the time limit of `sm/A` is not running",
+            "`sm/A (timeout)` is not running",
+        ),
+    ],
+)
+def test_what_is_made_of_fields_is_named_by_its_state(
+    old: str,
+    new: str,
+    message: str,
+    generated: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "main.yml").write_text(PARTS, "utf-8")
+    assert main(["run", "main.yml", "-q", "--trace", "run.jsonl"]) == 0
+    text = Path("run.jsonl").read_text("utf-8")
+    assert old in text
+    Path("run.jsonl").write_text(text.replace(old, new), "utf-8")
+    for options, expected in (([], message), (["--generated"], generated)):
+        capsys.readouterr()
+        assert main(["trace", "check", "main.yml", "run.jsonl", *options]) == 1
+        assert expected in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

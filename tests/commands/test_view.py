@@ -203,6 +203,29 @@ def test_a_database_of_a_sweep_is_no_trace(script: Path, tmp_path: Path) -> None
 
 
 @pytest.mark.slow
+def test_a_run_shows_the_states_that_fields_add(
+    tmp_path: Path, start: Callable[..., Viewed]
+) -> None:
+    path = tmp_path / "limited.yml"
+    path.write_text(
+        "name: sm\noutcomes: [done]\nstates:\n  - A: {template: ScriptedState, outcomes: [ok],"
+        " timeout: 9 s, transitions: {ok: done, timeout: done, preempted: done}}\n"
+    )
+    view = start("run", path, "--view", "--view-paused", "--generated", "-q")
+    at = view.until(lambda each: each["kind"] == "control" and each["at"])["at"]
+    assert [place["path"] for place in at] == ["sm/A"]
+    assert view.act(action="break", path="sm/A/TIMER") == 200
+    assert view.act(action="resume") == 200
+    view.until(
+        lambda each: (
+            each["kind"] == "control" and each["at"][:1] and each["at"][0]["path"] == "sm/A/TIMER"
+        )
+    )
+    assert view.act(action="stop") == 200
+    view.end()
+
+
+@pytest.mark.slow
 def test_view_opens_the_page_of_a_run(script: Path, start: Callable[..., Viewed]) -> None:
     view = start("run", script, "--view", "--view-paused", "-q")
     words = ["view", "--attach", str(view.port), "--no-browser"]
@@ -238,6 +261,7 @@ def smachac(*words: object) -> subprocess.CompletedProcess[str]:
         (["view", "SCRIPT", "--attach", "SCRIPT"], "main.yml is no trace"),
         (["view", "SCRIPT", "--port", "x"], "must be a port"),
         (["run", "SCRIPT", "--view-paused"], "--view-paused needs --view"),
+        (["run", "SCRIPT", "--generated"], "--generated needs --view"),
         (["run", "--view", "SCRIPT"], "must be a port"),
     ],
 )

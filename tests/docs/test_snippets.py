@@ -32,7 +32,7 @@ FRAGMENTS = {
     "properties": 1,
     "robots": 11,
     "ros": 2,
-    "scenarios": 4,
+    "scenarios": 5,
     "semantics": 13,
     "state_types": 2,
     "sweep": 2,

@@ -7,7 +7,10 @@ from typing import Any
 import pytest
 
 import smachac
+from smachac.diagnostics.source import Source
+from smachac.driver import analyse_script
 from smachac.interpreter.behaviours import builtin_behaviour
+from smachac.interpreter.interpreter import run
 from smachac.interpreter.scenario import (
     PlainStep,
     Scenario,
@@ -18,6 +21,7 @@ from smachac.interpreter.scenario import (
     scenario_behaviour,
 )
 from smachac.ir.nodes import Machine
+from smachac.sweep.play import FailedError, play, played_behaviour
 from tests.support.ir_machines import concurrence, iterator, leaf, machine, ran, short
 
 
@@ -129,7 +133,7 @@ def test_a_misspelt_key_is_named() -> None:
 
 def test_other_keys_beside_states_are_told() -> None:
     assert read_scenario({"states": {}, "state": {}}, picking())[1] == [
-        ScenarioProblem("unknown key `state`; a scenario has only `states`", "remove `state`")
+        ScenarioProblem("unknown key `state`; a scenario has `states` and `fill`", "remove `state`")
     ]
 
 
@@ -335,3 +339,112 @@ def test_a_wait_ends_with_the_request_also_without_the_outcome_preempted() -> No
     result, events = ran(given.root, scenario_behaviour(scenario, given, builtin_behaviour()))
     assert "exit sm/RACE/FAST done" in short(events)
     assert result.time == 0
+
+
+STEPS = """\
+name: sm
+outcomes: [done, lost, stopped]
+userdata: {count: 1}
+states:
+  - LOOK:
+      template: ScriptedState
+      outcomes: [found, nothing]
+      output_keys: [place, label]
+      transitions: {found: TEST, nothing: lost}
+  - TEST:
+      template: ConditionalOutcomeState
+      input_keys: [count]
+      outcomes: ["yes", "no"]
+      callbacks: {"yes": "lambda ud: ud.count > 0"}
+      default_outcome: "no"
+      transitions: {"yes": LIMITED, "no": lost}
+  - LIMITED:
+      template: ScriptedState
+      outcomes: [ok]
+      timeout: 30 s
+      transitions: {ok: done, timeout: lost, preempted: stopped}
+"""
+
+
+def played(data: Any) -> tuple[str | None, float, list[tuple[str, object]]]:
+    """The outcome and the time of a run with a scenario, and what was written."""
+    machine = analyse_script(Source("main.yml", STEPS)).machine
+    assert machine is not None
+    scenario, problems = read_scenario(data, machine)
+    assert problems == []
+    events: list[Any] = []
+    result = run(machine, played_behaviour(machine, scenario, 0), events.append)
+    written = [(event["key"], event["value"]) for event in events if event["event"] == "write"]
+    return result.outcome, result.time, written
+
+
+@pytest.mark.parametrize(
+    ("after", "outcome", "time"),
+    [("20 s", "done", 20.0), (29.5, "done", 29.5), ("40 s", "lost", 40.0), ("1 h", "lost", 3600.0)],
+)
+def test_a_step_takes_time(after: object, outcome: str, time: float) -> None:
+    assert played({"states": {"LIMITED": {"outcome": "ok", "after": after}}})[:2] == (outcome, time)
+
+
+@pytest.mark.parametrize("after", ["soon", -1, True, "5 parsec", None, [3]])
+def test_what_is_no_time(after: object) -> None:
+    _, problems = read({"CHECK": {"after": after}})
+    assert problems == ["sm/CHECK, step 1: `after` is a time, such as `30 s`, `5 min` or `2 h`"]
+
+
+def test_a_step_can_be_the_own_code_of_the_state() -> None:
+    assert played({"states": {"TEST": [{"run": True}]}})[0] == "done"
+    assert played({"states": {"TEST": ["no"]}})[0] == "lost"
+    _, problems = read({"CHECK": {"run": True, "outcome": True}})
+    assert problems == ["sm/CHECK, step 1: a step with `run` has no `outcome`"]
+
+
+@pytest.mark.parametrize(
+    ("states", "outcome", "written"),
+    [
+        ({}, "done", ["label", "place"]),
+        ({"LOOK": "found"}, "done", ["label", "place"]),
+        ({"LOOK": {"set": {"place": 7}}}, "done", ["label", "place"]),
+        ({"LOOK": {"error": "no camera"}}, None, []),
+    ],
+)
+def test_keys_are_filled_by_their_types(
+    states: object, outcome: str | None, written: list[str]
+) -> None:
+    found = played({"fill": True, "states": states})
+    assert found[0] == outcome
+    assert sorted(key for key, _ in found[2]) == written
+    assert ("place", 7) in found[2] or "LOOK" not in str(states) or "set" not in str(states)
+    assert played({"states": states})[2] == [pair for pair in found[2] if pair == ("place", 7)]
+
+
+def test_what_is_no_fill() -> None:
+    _, problems = read_scenario({"fill": "yes", "states": {}}, picking())
+    assert problems == [ScenarioProblem("`fill` is true or false", "write `fill: true`")]
+
+
+READS = """\
+name: sm
+outcomes: [done]
+states:
+  - LOOK: {template: ScriptedState, outcomes: [ok], output_keys: [place], transitions: {ok: GO}}
+  - GO:
+      template: ConditionalOutcomeState
+      input_keys: [place]
+      outcomes: [far]
+      callbacks: {far: "lambda ud: len(ud.place) > 1"}
+      default_outcome: far
+      transitions: {far: done}
+"""
+
+
+def test_the_help_for_a_key_that_nothing_has_written() -> None:
+    machine = analyse_script(Source("main.yml", READS)).machine
+    assert machine is not None
+    with pytest.raises(FailedError) as caught:
+        play(machine, Scenario(steps={}), 0, None, lambda event: None)
+    message, place, help_ = str(caught.value).splitlines()
+    assert message == "sm/GO: reads `place`, which holds nothing"
+    assert place.startswith("  --> main.yml:5")
+    assert help_ == "help: write it with `set` in an earlier step, or `fill: true` in the scenario"
+    assert play(machine, Scenario(steps={}, fill=True), 0, None, lambda event: None) == "done"

@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, given, seed, settings
 from smachac.diagnostics.source import Source
 from smachac.driver import analyse, build
 from smachac.ir.nodes import Checked, Machine
+from smachac.ir.written import written
 from smachac.runtime.container_tree import containers
 from smachac.runtime.tracing import trace
 from smachac.targets.python import TARGET
@@ -75,7 +76,7 @@ def machine() -> Machine:
 
 def judged(lines: tuple[str, ...] | list[str]) -> tuple[JudgedTrace, Coverage]:
     taken = Coverage(machine())
-    return judge_statuses(machine(), "bag", statuses(lines), taken), taken
+    return judge_statuses(machine(), "bag", statuses(lines), taken, written(machine())), taken
 
 
 def reason(lines: tuple[str, ...] | list[str]) -> tuple[int, str]:
@@ -110,7 +111,7 @@ def test_several_runs_may_follow_each_other() -> None:
 @pytest.mark.parametrize(
     ("changes", "at", "message"),
     [
-        ({4: "sm TRY"}, 5, "`found` of `sm/FIND` does not lead to `sm/TRY (retry)`"),
+        ({4: "sm TRY"}, 5, "`found` of `sm/FIND` does not lead to `sm/TRY`"),
         ({3: "sm BOTH"}, 4, "`sm/FIND` is left before its end"),
         ({3: "sm/FIND : none"}, 4, "no outcome of `sm/FIND/GO` leads to `sm/FIND:none`"),
         ({2: "sm/FIND HIDE"}, 3, "the script has no state `sm/FIND/HIDE`"),
@@ -118,7 +119,7 @@ def test_several_runs_may_follow_each_other() -> None:
         ({2: "other X"}, 3, "the script has no container `other`"),
         ({1: "sm/FIND GO"}, 2, "`sm/FIND/GO` is active first, in the script `sm/FIND/LOOK` is"),
         ({8: "sm/BOTH : lost"}, 9, "`sm/BOTH` ends with `lost`, which is none of its outcomes"),
-        ({14: "sm None : lost"}, 15, "`ok` of `sm/TRY (retry)` does not lead to `sm:lost`"),
+        ({14: "sm None : lost"}, 15, "`ok` of the retry of `sm/TRY` does not lead to `sm:lost`"),
         ({4: "sm/FIND : found"}, 5, "`sm/FIND` has ended already"),
         ({4: "sm/FIND LOOK"}, 5, "`sm/FIND` has ended already"),
     ],
@@ -157,7 +158,7 @@ def test_the_outcome_is_in_the_info(info: str, outcome: str | None, complete: bo
 
 def test_of_statuses_without_starts_and_ends_the_names_are_judged() -> None:
     found = [each._replace(complete=False) for each in statuses(["sm BOTH", "sm FIND", "sm HIDE"])]
-    fault = judge_statuses(machine(), "bag", found, Coverage(machine())).fault
+    fault = judge_statuses(machine(), "bag", found, Coverage(machine()), written(machine())).fault
     assert fault is not None
     assert fault[:2] == (3, "the script has no state `sm/HIDE`")
 
@@ -212,5 +213,5 @@ def of_program(machine: Machine, asked: tuple[str, int]) -> list[Status]:
 def test_runs_of_generated_programs_are_allowed(drawn: tuple[Machine, tuple[str, int]]) -> None:
     machine, asked = drawn
     found = of_program(machine, asked)
-    judged = judge_statuses(machine, "run", found, Coverage(machine))
+    judged = judge_statuses(machine, "run", found, Coverage(machine), written(machine))
     assert judged.fault is None, found[judged.fault[0] - 1]

@@ -281,6 +281,29 @@ def test_the_types_of_new_states_are_those_of_the_library(script: Path) -> None:
     assert not {"StateMachine", "Concurrence", "Base"} & docs.keys()
 
 
+FRAGMENTS = {
+    "a helper class": ("{% block class_defs %}\nclass Part:\n    x = 1\n{% endblock %}\n", False),
+    "macros": ("{% macro part(a) %}{{ a }}{% endmacro %}\n", False),
+    "imports": ("{% block imports %}\nimport math\n{% endblock %}\n", False),
+    "a class of a state": (
+        "{% block class_defs %}\nclass Part(smach.State):\n    def execute(self, userdata):\n"
+        "        return 'done'\n{% endblock %}\n",
+        True,
+    ),
+    "a state": ("{% block body %}\nsmach.StateMachine.add('{{ name }}')\n{% endblock %}\n", True),
+    "a state of another template": ('{% extends "SleepState.tpl.py" %}\n', True),
+}
+
+
+@pytest.mark.parametrize("kind", FRAGMENTS)
+def test_a_template_that_makes_no_state_is_no_type_of_a_new_state(script: Path, kind: str) -> None:
+    text, is_state = FRAGMENTS[kind]
+    Path("templates").mkdir()
+    Path("templates/Part.tpl.py").write_text(text)
+    types = edits_of(script).types({})["types"]  # type: ignore[index]
+    assert ("Part" in {each["name"] for each in types}) is is_state
+
+
 def test_edits_need_the_token_and_the_own_origin(script: Path, view: Viewed) -> None:
     own, foreign = f"http://{HOST}:{view.port}", "http://evil.example"
     body = json.dumps({**RENAME, "apply": True})

@@ -2,6 +2,7 @@
 
 import type { Finding, Model, Round } from "./model";
 import type { TraceEvent } from "./run_state";
+import type { SimulationStatus } from "./simulation";
 
 export interface Place {
   path: string;
@@ -30,6 +31,7 @@ export type Message =
   | { kind: "trace"; events: TraceEvent[] }
   | { kind: "dropped"; count: number }
   | { kind: "source"; waits: string }
+  | ({ kind: "simulation" } & SimulationStatus)
   | ({ kind: "control" } & ControlStatus);
 
 export interface Listener {

@@ -145,6 +145,7 @@ export interface Model {
   root: Path;
   live: boolean;
   editable?: boolean;
+  simulated?: boolean;
   /** Of a served model: greater than that of every earlier one. */
   revision?: number;
   nodes: StateNode[];

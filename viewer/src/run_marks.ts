@@ -12,7 +12,7 @@ export function nodeAt(graph: Graph, path: string): StateNode | undefined {
   return graph.nodes.get(path);
 }
 
-export function highlightOf(graph: Graph, state: RunState, control: ControlStatus | null): Highlight {
+export function highlightOf(graph: Graph, state: RunState, control: Pick<ControlStatus, "at" | "breakpoints"> | null): Highlight {
   const visits = new Map<Path, number>();
   for (const [path, each] of state.visited) {
     const node = nodeAt(graph, path);

@@ -8,6 +8,7 @@ import type { Finding, StateNode } from "./model";
 import type { FilmData } from "./film";
 import { Film } from "./film";
 import { Recording } from "./recording";
+import { Simulation } from "./simulation";
 import { foreignPlace, highlightOf, inWords, inline, keyValues, nodeAt, placeOf, seconds } from "./run_marks";
 import type { RunState, TraceEvent } from "./run_state";
 import { activeLeaves, roundInWords } from "./run_state";
@@ -39,6 +40,7 @@ class RunView {
   private readonly written: WrittenEvents;
   private readonly timeline: Timeline;
   private readonly control: Control;
+  private readonly simulation: Simulation;
   private readonly status = html("p", { class: "run-status", role: "status" });
   private readonly foreign = html("p", { class: "run-foreign", role: "status" });
   private readonly log = html("ol", { class: "log", tabindex: "0", "aria-label": "Log" });
@@ -62,8 +64,10 @@ class RunView {
     this.written = new WrittenEvents(() => viewer.graph.parts);
     this.timeline = new Timeline(this.recording, () => this.draw());
     this.control = new Control(token, () => this.controlled(), (reason) => viewer.notice(reason));
+    this.simulation = new Simulation(viewer, token, () => this.simulated(),
+      (path) => roundInWords(this.recording.at(Infinity), path));
     this.bar = html("div", { class: "run-bar" },
-      this.foreign, this.status, this.control.element, this.follow, this.timeline.element);
+      this.foreign, this.status, this.control.element, this.simulation.element, this.follow, this.timeline.element);
     this.details = html("div", { class: "run-details", hidden: true }, this.log, this.keys);
     viewer.footer.append(this.bar, this.details);
     viewer.addSection({ id: "run", title: "Run", first: true, fill: (node) => this.fill(node) });
@@ -94,6 +98,7 @@ class RunView {
         this.written.clear();
         this.loggedTo = -1;
         this.timeline.follows = true;
+        if (this.simulation.runs) this.simulation.received({ state: "off" });
         this.changed();
       },
       received: (message) => this.received(message),
@@ -131,11 +136,31 @@ class RunView {
         break;
       case "control":
         this.control.received(message);
+        break;
+      case "simulation":
+        this.simulation.received(message);
+        void this.simulation.follow();
     }
+  }
+
+  /** Show the run of the simulation as far as it is chosen. */
+  private simulated(): void {
+    const { status } = this.simulation;
+    this.recording.clear();
+    this.written.clear();
+    if (status.state !== "off") this.recording.add(this.written.all(status.events));
+    this.details.hidden = status.state === "off" || this.details.hidden;
+    this.loggedTo = -1;
+    this.timeline.goTo(Infinity);
+    this.changed();
   }
 
   private async remodel(model: Viewer["graph"]["model"]): Promise<void> {
     await this.viewer.setModel(model);
+    if (this.simulation.runs) {
+      this.simulated(); // its states are those of the machine now
+      await this.simulation.remodelled();
+    }
     this.loggedTo = -1;
     this.draw();
   }
@@ -182,7 +207,9 @@ class RunView {
     if (any && this.details.hidden) this.open();
     this.bar.hidden = !any && !this.link;
     const state = this.recording.at(this.timeline.position);
-    const control = this.timeline.follows ? this.control.status : null;
+    const { at } = this.simulation;
+    const simulated = this.simulation.runs ? { at: at.map(({ path }) => ({ path, outcome: null, round: null, outcomes: [] })), breakpoints: [] } : null;
+    const control = this.timeline.follows ? (simulated ?? this.control.status) : null;
     this.viewer.highlight(any ? highlightOf(this.viewer.graph, state, control) : null);
     this.status.textContent = this.inWords(state);
     const foreign = foreignPlace(this.viewer.graph, this.recording.at(Infinity));
@@ -202,7 +229,7 @@ class RunView {
 
   /** Count the seconds of the active states on, also without events. What has changed is drawn as a whole. */
   private tick(): void {
-    if (this.live && this.timeline.follows && !this.bar.hidden && !this.waiting) {
+    if (this.live && !this.simulation.runs && this.timeline.follows && !this.bar.hidden && !this.waiting) {
       this.status.textContent = this.inWords(this.recording.at(this.timeline.position));
     }
   }
@@ -232,6 +259,11 @@ class RunView {
     const status = this.timeline.follows ? this.control.status : null;
     if (status?.ended) return state.error ? `failed in ${name(state.error.path)}: ${state.error.message}` : "ended";
     const round = (path: string): string => (state.rounds.has(path) ? ` (${roundInWords(state, path)})` : "");
+    if (this.simulation.runs && this.timeline.follows) {
+      const { at } = this.simulation;
+      if (at.length) return `${at.map(({ path }) => `${name(path)}${round(path)}`).join(", ")}: choose an outcome`;
+      if (state.error) return `failed in ${name(state.error.path)}: ${state.error.message}`;
+    }
     const running = activeLeaves(state).map((path) => `${name(path)}${round(path)} ${this.since(state, path)}`);
     const waits = (status?.at ?? []).map(({ path, outcome, round }) =>
       outcome === null ? `paused before ${round === null ? "" : `${round === "try" ? "a try" : "an item"} of `}${name(path)}` : `paused after ${name(path)}: ${outcome}`);
@@ -243,7 +275,7 @@ class RunView {
   }
 
   private since(state: RunState, path: string): string {
-    const waited = this.live && this.timeline.follows ? (performance.now() - this.arrived) / 1000 : 0;
+    const waited = this.live && !this.simulation.runs && this.timeline.follows ? (performance.now() - this.arrived) / 1000 : 0;
     return seconds(state.t - (state.active.get(path) ?? state.t) + waited);
   }
 

@@ -34,6 +34,8 @@ from smachac.frontend.resolved_script import (
 from smachac.frontend.text.fields import as_items, as_name, as_names, pairs_of, wrong
 from smachac.frontend.text.values import UNKNOWN
 from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
+from smachac.ir import durations
+from smachac.ir.durations import DURATION, SECONDS
 from smachac.ir.nodes import Expression, Outcome, StateType, Value
 from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED, is_failure
 
@@ -64,10 +66,8 @@ MEANT_PARTS: Mapping[str, str] = {
 }
 """Other words for a part of sugar, which are not its misspelt names."""
 
-SECONDS = {"": 1.0, "ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
 _SENTENCE = re.compile(r"(?:for )?([A-Za-z_]\w*) in ([A-Za-z_]\w*)")
 _PARTS = re.compile(r"(\d+(?:\.\d+)?)\s*([a-z]+)")
-_DURATION = re.compile(r"(\d+(?:\.\d+)?|\.\d+)\s*([a-z]*)")
 
 
 def is_own(name: str, type_: StateType) -> bool:
@@ -257,10 +257,9 @@ UNITS = {
 
 def duration(tree: Tree, report: Report) -> float | None:
     """A duration in seconds: `20s`, `500ms`, `1.5 min`, `1h`, or a number of seconds."""
-    if isinstance(tree, Scalar) and isinstance(tree.value, str | int | float):
-        found = _DURATION.fullmatch(str(tree.value).strip())
-        if found is not None and found.group(2) in SECONDS and not isinstance(tree.value, bool):
-            return float(found.group(1)) * SECONDS[found.group(2)]
+    found = durations.seconds(tree.value) if isinstance(tree, Scalar) else None
+    if found is not None:
+        return found
     wrong(tree, "duration", report, _duration_meant(tree))
     return None
 
@@ -271,7 +270,7 @@ def _duration_meant(tree: Tree) -> str | None:
     if isinstance(tree, Seq | Map):
         return _duration_inside(tree)
     number, arrow, target = tree.span.text.partition("->")
-    if arrow and _DURATION.fullmatch(number.strip()) is not None and target.strip():
+    if arrow and DURATION.fullmatch(number.strip()) is not None and target.strip():
         return (
             f"write `timeout: {number.strip()}`, and `timeout: {target.strip()}` in `transitions`"
         )
@@ -282,7 +281,7 @@ def _duration_meant(tree: Tree) -> str | None:
             seconds = sum(float(number) * SECONDS[unit]
                           for (number, _), unit in zip(parts, units, strict=True))  # fmt: skip
             return f"write it with one unit: `{seconds:g}s`"
-    found = _DURATION.fullmatch(tree.span.text)
+    found = DURATION.fullmatch(tree.span.text)
     unit = UNITS.get(found.group(2)) if found is not None else None
     return f"write it as `{found.group(1)}{unit}`" if found is not None and unit else None
 
@@ -296,10 +295,10 @@ def _duration_inside(tree: Seq | Map) -> str | None:
     if len(values) != 1 or not isinstance(values[0][1], Scalar):
         return None
     name, text = values[0][0], values[0][1].span.text
-    limit = _DURATION.fullmatch(name)
+    limit = DURATION.fullmatch(name)
     if limit is not None and limit[2] in SECONDS:
         return f"write `timeout: {name}`, and `timeout: {text}` in `transitions`"
-    found = _DURATION.fullmatch(text)
+    found = DURATION.fullmatch(text)
     if found is None:
         return None
     unit = found[2] or UNITS.get(name, name if name in SECONDS else "") or "s"

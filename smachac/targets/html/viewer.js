@@ -1781,6 +1781,212 @@ ${key}`, { path, key, value: event.value, t: state.t, order: state.writes });
     }
   };
 
+  // src/simulation.ts
+  var Simulation = class {
+    /** `changed` is called after each change; `round` gives the try or item of a state in words. */
+    constructor(viewer, token, changed, round) {
+      this.viewer = viewer;
+      this.token = token;
+      this.changed = changed;
+      this.round = round;
+      if (token === null || !viewer.graph.model.simulated) return;
+      viewer.toolbar.append(this.start);
+      this.element.append(
+        this.back,
+        button("Restart the simulation", "Restart", () => void this.act({ action: "start" }), "Stand before the first state again"),
+        button("End the simulation", "End", () => void this.act({ action: "end" }))
+      );
+      viewer.addSection({ id: "simulate", title: "Simulate", first: true, fill: (node) => this.fill(node) });
+      document.addEventListener("keydown", (event) => this.key(event));
+      this.show();
+    }
+    viewer;
+    token;
+    changed;
+    round;
+    /** The buttons that act on a simulation that runs. */
+    element = html("div", { class: "control", role: "group", "aria-label": "Simulation" });
+    status = { state: "off" };
+    start = button("Simulate the machine", "Simulate", () => void this.act({ action: "start" }), "Choose the outcome of each state");
+    back = button("Step back", "Step back", () => void this.act({ action: "back" }), "Take back the last choice (z)");
+    said = html("p", { class: "said", role: "status" });
+    shown = null;
+    get runs() {
+      return this.status.state !== "off";
+    }
+    /** The states that wait for a choice. */
+    get at() {
+      return this.status.state === "off" ? [] : this.status.at;
+    }
+    received(status) {
+      this.status = status;
+      this.say("");
+      this.show();
+      this.changed();
+      this.viewer.refresh();
+    }
+    /** Select a state that waits; after the end, the machine. */
+    async follow() {
+      const { selected } = this.viewer;
+      if (this.status.state === "off" || this.at.some(({ path }) => path === selected)) return;
+      await this.viewer.select(this.at[0]?.path ?? null);
+    }
+    /** The machine has changed: its states may have other names. */
+    async remodelled() {
+      this.shown = null;
+      this.viewer.refresh();
+      await this.follow();
+    }
+    show() {
+      this.element.hidden = this.token === null || !this.runs;
+      this.start.disabled = this.runs;
+      this.back.disabled = this.status.state === "off" || !this.status.steps.length;
+    }
+    async act(body) {
+      const at = this.status.state === "off" ? 0 : this.status.steps.length;
+      const answer = await post(this.token, "simulate", { at, ...body });
+      if (!answer.ok) {
+        this.say(answer.reason, "refused");
+        if (!this.runs) this.viewer.notice(answer.reason);
+      } else if (answer.content.file !== void 0) {
+        this.say(`Written: ${answer.content.file}
+${answer.content.command}`, "done");
+      }
+      return answer.ok;
+    }
+    say(text, tone = "") {
+      this.said.textContent = text;
+      this.said.className = `said ${tone}`.trim();
+    }
+    /** The section of the panel; what is typed in stays while the simulation stands where it is. */
+    fill(node) {
+      if (this.status.state === "off") return null;
+      const path = node?.path ?? null;
+      if (this.shown?.status !== this.status || this.shown.path !== path) {
+        const element = html("div", { class: "edit simulate" });
+        this.shown = { status: this.status, path, element };
+        element.append(...this.parts(path));
+      }
+      return this.shown.element;
+    }
+    parts(path) {
+      if (this.status.state === "off") return [];
+      const { note, at, steps, state, outcome } = this.status;
+      const parts = [];
+      if (note) parts.push(html("p", { class: "said refused" }, note));
+      const standing = at.find((each) => each.path === path);
+      if (standing) parts.push(this.choices(standing));
+      const others = at.filter((each) => each !== standing);
+      if (others.length) {
+        parts.push(html(
+          "p",
+          {},
+          standing ? "These wait too: " : "Choose the outcome of: ",
+          ...others.map((each) => this.link(this.name(each.path), each.path))
+        ));
+      }
+      if (!at.length) parts.push(this.saving(state === "failed" ? "The machine has failed." : `The machine has ended with ${outcome}.`, outcome));
+      parts.push(this.said);
+      if (steps.length) parts.push(this.history(steps));
+      return parts;
+    }
+    name(path) {
+      return this.viewer.graph.nodes.get(path)?.name ?? path;
+    }
+    link(text, path) {
+      const made = html("button", { type: "button", class: "link" }, text);
+      made.addEventListener("click", () => void this.viewer.select(path));
+      return made;
+    }
+    /** What a state that waits can do. */
+    choices(standing) {
+      const stop = html("input", { type: "checkbox" });
+      const takes = html("input", { type: "text", placeholder: "0 s", spellcheck: "false", "aria-label": "Time that it takes" });
+      const message = html("input", { type: "text", placeholder: "message", spellcheck: "false", "aria-label": "Message of the error" });
+      const choose = (body) => {
+        void this.act({ action: "choose", path: standing.path, stop: stop.checked, ...body });
+      };
+      const outcomes2 = standing.outcomes.map((each) => this.outcome(standing.path, each, (set) => choose({ outcome: each.name, set, ...takes.value.trim() ? { after: takes.value } : {} })));
+      const other = [
+        standing.run && button(`Let it ${standing.run}`, standing.run, () => choose({ run: true })),
+        standing.wait && button(standing.wait, standing.wait, () => choose({ wait: true }), "Let time pass")
+      ].filter((each) => each !== "");
+      const stopWords = standing.stops ? "A stop request arrives first: it ends with preempted" : "A stop request arrives first";
+      const form = html(
+        "div",
+        { class: "waiting" },
+        html("p", {}, `${standing.stopped ? "It has a stop request. " : ""}${capital(this.round(standing.path) || "it")} ends with:`),
+        ...outcomes2,
+        other.length ? html("p", {}, "Or:") : null,
+        other.length ? html("p", { class: "forced" }, ...other) : null,
+        html(
+          "details",
+          {},
+          html("summary", {}, "more"),
+          html("label", { class: "more-field" }, "It takes", takes),
+          standing.stopped ? null : html("label", { class: "more-field" }, stop, stopWords),
+          html("p", { class: "more-field" }, button("Let it fail with an error", "error", () => choose({ error: message.value })), message)
+        )
+      );
+      form.addEventListener("input", () => this.say(""));
+      return form;
+    }
+    /** An outcome with the keys that the state writes. */
+    outcome(path, { name, keys: keys2 }, choose) {
+      const fields = keys2.map((key) => keyField(key));
+      const end2 = button(`End with ${name}`, name, () => choose(Object.fromEntries(fields.filter(({ used }) => used.checked).map(({ key, value }) => [key.name, value.value]))));
+      const node = this.viewer.graph.nodes.get(path);
+      const look3 = node?.outcomes.find((each) => each.name === name) ?? node?.repeated?.find((each) => each.name === name);
+      if (look3?.failure) end2.classList.add("failure");
+      return html("div", { class: "ending", role: "group", "aria-label": name }, end2, ...fields.map(({ element }) => element));
+    }
+    saving(words, outcome) {
+      const name = html("input", { type: "text", required: true, spellcheck: "false", autocomplete: "off" });
+      name.value = outcome?.replaceAll(/[^\w-]/g, "_") ?? "failure";
+      const form = html(
+        "form",
+        {},
+        html("p", {}, words),
+        html("p", { class: "field" }, html("label", {}, "Name of the scenario", name)),
+        html("div", { class: "acts" }, html("button", { type: "submit" }, "Save as a scenario"))
+      );
+      form.addEventListener("submit", (event) => {
+        event.preventDefault();
+        void this.act({ action: "save", name: name.value.trim() });
+      });
+      return form;
+    }
+    /** The choices so far; a click on one goes back to where it was made. */
+    history(steps) {
+      const rows = steps.map(({ path, text }, index) => {
+        const back = button(`Back to the choice of ${this.name(path)}, step ${index + 1}`, this.name(path), () => void this.act({ action: "back", to: index }), "Go back to this choice");
+        back.classList.add("link");
+        return html("li", {}, back, html("span", {}, ` ${text}`));
+      });
+      const list = html("ol", { class: "steps", tabindex: "0", "aria-label": "Steps" }, ...rows);
+      requestAnimationFrame(() => list.scrollTop = list.scrollHeight);
+      return html("details", { open: true }, html("summary", {}, "steps"), list);
+    }
+    key(event) {
+      if (event.key !== "z" || event.ctrlKey || event.metaKey || event.altKey || this.back.disabled || !this.runs) return;
+      if (event.target.closest("input, select, textarea")) return;
+      void this.act({ action: "back" });
+    }
+  };
+  function capital(text) {
+    return text.slice(0, 1).toUpperCase() + text.slice(1);
+  }
+  function keyField(key) {
+    const used = html("input", { type: "checkbox", "aria-label": `Write ${key.name}`, title: "Write this key" });
+    used.checked = true;
+    const label = { "aria-label": `Value of ${key.name}`, title: key.type };
+    const value = key.choices.length ? html("select", label, ...key.choices.map((each) => html("option", { value: each }, each))) : html("input", { ...label, type: "text", spellcheck: "false", autocomplete: "off" });
+    value.value = key.value;
+    value.addEventListener("input", () => used.checked = true);
+    const element = html("div", { class: "key-field" }, used, html("span", { class: "key", title: key.type }, key.name, " ", html("small", {}, key.type)), value);
+    return { key, used, value, element };
+  }
+
   // src/run_marks.ts
   function nodeAt(graph, path) {
     return graph.nodes.get(path);
@@ -2125,12 +2331,19 @@ ${place2.key}`;
       this.written = new WrittenEvents(() => viewer.graph.parts);
       this.timeline = new Timeline(this.recording, () => this.draw());
       this.control = new Control(token, () => this.controlled(), (reason) => viewer.notice(reason));
+      this.simulation = new Simulation(
+        viewer,
+        token,
+        () => this.simulated(),
+        (path) => roundInWords(this.recording.at(Infinity), path)
+      );
       this.bar = html(
         "div",
         { class: "run-bar" },
         this.foreign,
         this.status,
         this.control.element,
+        this.simulation.element,
         this.follow,
         this.timeline.element
       );
@@ -2148,6 +2361,7 @@ ${place2.key}`;
     written;
     timeline;
     control;
+    simulation;
     status = html("p", { class: "run-status", role: "status" });
     foreign = html("p", { class: "run-foreign", role: "status" });
     log = html("ol", { class: "log", tabindex: "0", "aria-label": "Log" });
@@ -2185,6 +2399,7 @@ ${place2.key}`;
           this.written.clear();
           this.loggedTo = -1;
           this.timeline.follows = true;
+          if (this.simulation.runs) this.simulation.received({ state: "off" });
           this.changed();
         },
         received: (message) => this.received(message),
@@ -2220,10 +2435,29 @@ ${place2.key}`;
           break;
         case "control":
           this.control.received(message);
+          break;
+        case "simulation":
+          this.simulation.received(message);
+          void this.simulation.follow();
       }
+    }
+    /** Show the run of the simulation as far as it is chosen. */
+    simulated() {
+      const { status } = this.simulation;
+      this.recording.clear();
+      this.written.clear();
+      if (status.state !== "off") this.recording.add(this.written.all(status.events));
+      this.details.hidden = status.state === "off" || this.details.hidden;
+      this.loggedTo = -1;
+      this.timeline.goTo(Infinity);
+      this.changed();
     }
     async remodel(model) {
       await this.viewer.setModel(model);
+      if (this.simulation.runs) {
+        this.simulated();
+        await this.simulation.remodelled();
+      }
       this.loggedTo = -1;
       this.draw();
     }
@@ -2267,7 +2501,9 @@ ${place2.key}`;
       if (any && this.details.hidden) this.open();
       this.bar.hidden = !any && !this.link;
       const state = this.recording.at(this.timeline.position);
-      const control = this.timeline.follows ? this.control.status : null;
+      const { at } = this.simulation;
+      const simulated = this.simulation.runs ? { at: at.map(({ path }) => ({ path, outcome: null, round: null, outcomes: [] })), breakpoints: [] } : null;
+      const control = this.timeline.follows ? simulated ?? this.control.status : null;
       this.viewer.highlight(any ? highlightOf(this.viewer.graph, state, control) : null);
       this.status.textContent = this.inWords(state);
       const foreign = foreignPlace(this.viewer.graph, this.recording.at(Infinity));
@@ -2285,7 +2521,7 @@ ${place2.key}`;
     }
     /** Count the seconds of the active states on, also without events. What has changed is drawn as a whole. */
     tick() {
-      if (this.live && this.timeline.follows && !this.bar.hidden && !this.waiting) {
+      if (this.live && !this.simulation.runs && this.timeline.follows && !this.bar.hidden && !this.waiting) {
         this.status.textContent = this.inWords(this.recording.at(this.timeline.position));
       }
     }
@@ -2312,6 +2548,11 @@ ${place2.key}`;
       const status = this.timeline.follows ? this.control.status : null;
       if (status?.ended) return state.error ? `failed in ${name(state.error.path)}: ${state.error.message}` : "ended";
       const round = (path) => state.rounds.has(path) ? ` (${roundInWords(state, path)})` : "";
+      if (this.simulation.runs && this.timeline.follows) {
+        const { at } = this.simulation;
+        if (at.length) return `${at.map(({ path }) => `${name(path)}${round(path)}`).join(", ")}: choose an outcome`;
+        if (state.error) return `failed in ${name(state.error.path)}: ${state.error.message}`;
+      }
       const running = activeLeaves(state).map((path) => `${name(path)}${round(path)} ${this.since(state, path)}`);
       const waits = (status?.at ?? []).map(({ path, outcome, round: round2 }) => outcome === null ? `paused before ${round2 === null ? "" : `${round2 === "try" ? "a try" : "an item"} of `}${name(path)}` : `paused after ${name(path)}: ${outcome}`);
       if (waits.length) return waits.join(", ");
@@ -2321,7 +2562,7 @@ ${place2.key}`;
       return running.join(", ");
     }
     since(state, path) {
-      const waited = this.live && this.timeline.follows ? (performance.now() - this.arrived) / 1e3 : 0;
+      const waited = this.live && !this.simulation.runs && this.timeline.follows ? (performance.now() - this.arrived) / 1e3 : 0;
       return seconds(state.t - (state.active.get(path) ?? state.t) + waited);
     }
     drawLog() {
