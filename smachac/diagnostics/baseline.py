@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Callable
-from pathlib import PurePath
 from typing import TypeAlias
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, fingerprint
@@ -118,4 +117,4 @@ def _without(
 
 
 def _entry_of(item: Diagnostic) -> Entry:
-    return PurePath(item.span.source.name).name, item.code, fingerprint(item)
+    return item.span.source.file_name, item.code, fingerprint(item)

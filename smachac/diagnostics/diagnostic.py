@@ -13,7 +13,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from enum import Enum
 from functools import lru_cache
-from pathlib import PurePath
 from typing import Generic, ParamSpec
 
 from smachac.diagnostics.negation import are_unlike
@@ -272,7 +271,7 @@ def fingerprint(item: Diagnostic) -> str:
     Taken over its code and arguments, the name of its file and that of its state; not over the
     path of the state, which depends on the caller.
     """
-    file = PurePath(item.span.source.name).name
+    file = item.span.source.file_name
     state = (item.finding.node or "").rpartition("/")[2]
     text = "\0".join((item.code, file, state, *item.finding.arguments))
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:16]

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import json
 import re
-from functools import cache, lru_cache
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from smachac.grammars import load
+from smachac.grammars import parser_of
 
 if TYPE_CHECKING:
-    from smachac.grammars.standalone.lalr import Lark
+    pass
 
 LONGEST = 1000
 """Limit on the length of a type, in characters."""
@@ -96,7 +96,7 @@ def parse_type(text: str) -> Type | None:
     from smachac.grammars.standalone.lalr import LarkError
 
     try:
-        found: Any = _parser().parse(text)
+        found: Any = parser_of("type", _TypeBuilder).parse(text)
         return _complete(found)
     except (LarkError, ValueError):
         return None
@@ -139,11 +139,6 @@ def unknown_words(type_: Type) -> tuple[str, ...]:
     if type_.args or type_.name in WORDS or re.search("[./]", type_.name):
         return found
     return (type_.name, *found)
-
-
-@cache
-def _parser() -> Lark:
-    return load("type", builder=_TypeBuilder())
 
 
 class _TypeBuilder:

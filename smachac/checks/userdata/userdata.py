@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cache
-from pathlib import PurePath
 
 from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
@@ -201,7 +200,7 @@ def _lacking(path: str, node: Container, keys: Sequence[str]) -> Finding:
     """SM302 for keys in the remapping of a container that it lacks as inputs."""
     first = next(remap for remap in node.remaps if remap.key in keys)
     source = node.children[0].span.source
-    file = PurePath(source.name).name
+    file = source.file_name
     owner = f"`{node.name}`" if source is first.span.source else f"the state of `{file}`"
     inputs = [key.name for key in node.inputs if key.span.source is not NOWHERE.source]
     names = ", ".join([*inputs, *keys])

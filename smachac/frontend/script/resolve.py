@@ -173,7 +173,7 @@ def resolve(
     kind = kind_of_tree(tree)
     if kind in OTHER_FILES:
         what, help = OTHER_FILES[kind]
-        help = help.replace("FILE", PurePath(source.name).name)
+        help = help.replace("FILE", source.file_name)
         message = f"a script is expected; this is {what}"
         report.append(wrong_shape(tree.entries[0].key.span, message, help, arguments=(kind,)))
         return None

@@ -47,8 +47,7 @@ class RunResult:
 def places(machine: Machine) -> dict[str, str]:
     """The place of each state in the script (`pick_block.yml:12`), by the path of the state."""
     return {
-        path: f"{Path(node.span.source.name).name}:{node.span.line}"
-        for path, node in walk(machine.root)
+        path: f"{node.span.source.file_name}:{node.span.line}" for path, node in walk(machine.root)
     }
 
 
