@@ -47,8 +47,8 @@ from smachac.checks.ros.message_values import (
 )
 from smachac.checks.ros.messages_in_classes import faults_in_classes
 from smachac.checks.rule import rule
-from smachac.checks.types.literals import at
-from smachac.checks.types.value_places import place_of_part
+from smachac.checks.types.literals import literal_finding
+from smachac.checks.types.value_places import Part, place_of_part
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.wording import both, listed
@@ -275,7 +275,7 @@ def _argument_findings(
         effect = f"`{node.name}` ends with `aborted`: the message is never sent"
         if wanted is None:
             effect = "the field is ignored, or the program stops"
-            yield unknown_field_finding(path, node, word, (message,), effect=effect)
+            yield replace(unknown_field_finding(path, node, word, (message,)), effect=effect)
             continue
         text = f"the value of `{names[-1]}` does not fit: the field of {described(message)} is"
         help = value_help(value, wanted)
@@ -302,7 +302,9 @@ def _untyped_mappings(context: Context, path: str, leaf: Leaf) -> Iterator[Findi
                     if meant != TYPE_KEY:
                         help += f" and `{TYPE_KEY}: {meant}` to its `remapping`"
                 message = "gets a mapping as its message, but no type: it lacks the key"
-                found = at(flow, f"`{leaf.name}` {message} `{TYPE_KEY}`", help, (leaf.name,))
+                found = literal_finding(
+                    flow, f"`{leaf.name}` {message} `{TYPE_KEY}`", help, (leaf.name,)
+                )
                 edits = with_input(leaf, TYPE_KEY) if meant is not None else ()
                 if edits and meant is not None and meant != TYPE_KEY:
                     edits += with_remapping(leaf, TYPE_KEY, meant)
@@ -331,7 +333,7 @@ def _wrong_messages(
     if absent is not None and absent.other is None:
         package, *_, name = re.split(r"[/.]", type_)
         meant = meant_type(name, "msg", absent)
-        yield at(given[0], no_type(package, name, "msg"), meant, (package, name))
+        yield literal_finding(given[0], no_type(package, name, "msg"), meant, (package, name))
     messages = [definition.part("message") for definition in found.get(("msg", type_), ())]
     effect = f"`{leaf.name}` ends with `aborted`: the message is never used"
     for name in sorted(names) if messages else ():
@@ -378,15 +380,14 @@ def _mapping_faults(
                 text = f"the value of `{steps[-1]}` does not fit: the field of"
                 text += f" {described(message)} is `{wanted}`"
                 help = value_help(given, wanted)
-            yield at(
+            finding = literal_finding(
                 flow,
                 text,
                 help,
                 (message.name, *map(str, item), *steps),
-                part=(*item, *steps),
-                key=wanted is None,
-                effect=effect,
+                part=Part((*item, *steps), key=wanted is None),
             )
+            yield replace(finding, effect=effect)
 
 
 _Literal: TypeAlias = "tuple[TypeFlow, tuple[int, ...], Data]"
@@ -456,8 +457,8 @@ def _wrong_values(
         if wanted is None:
             word = _field_word(names, span)
             also = other if len(names) == 1 else ""
-            finding = unknown_field_finding(path, leaf, word, (message,), effect=effect, other=also)
-            yield replace(finding, help=level or finding.help)
+            finding = unknown_field_finding(path, leaf, word, (message,), other=also)
+            yield replace(finding, help=level or finding.help, effect=effect)
             continue
         text = f"the value of `{names[-1]}` does not fit: the field of {described(message)} is"
         place = _value_span(_field_word(names, span).span, span)
@@ -526,7 +527,7 @@ def _faults(
             lists = (("input_keys", leaf.inputs), ("output_keys", leaf.outputs))
             named = [part for part, keys in lists if name in [key.name for key in keys]]
             also = f", in the `{named[0]}`" if use.key and named and len(named) == 1 else ""
-            yield unknown_field_finding(path, leaf, use.word, messages, also, other=other)
+            yield unknown_field_finding(path, leaf, use.word, messages, also=also, other=other)
         elif use.key and name in inputs:
             given = present(context.types.inputs[path, name])
             fields = [message.field(name) for message in messages]

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_types import type_of_data
@@ -33,6 +34,18 @@ LONGEST = 20_000
 """In characters. The parts of a longer value are not searched."""
 
 _TEXT_AFTER = re.compile(r"""\s*:\s*(?:"([^"\n]*)"|'([^'\n]*)'|([^\s,}\]#]+))""")
+
+
+class Part(NamedTuple):
+    """A part of a value: the steps that lead to it from the whole value. `key`: the key of the part
+    in its mapping is meant, and not its value."""
+
+    steps: tuple[int | str, ...] = ()
+    key: bool = False
+
+
+WHOLE = Part()
+"""The whole value."""
 
 
 def place_of_part(span: Span, steps: Sequence[int | str], *, key: bool = False) -> Span:
