@@ -331,7 +331,7 @@ class _Resolver:
             self.count += 1
         via = around.via
         fields = read_fields(
-            name, entries, owner, type_, table, self.report, scope=scope, inner=around.inner
+            name, entries, type_, table, self.report, scope=scope, inner=around.inner
         )
         presets: tuple[Preset, ...] = fields.get("userdata", ())
         self.keys += len(presets)

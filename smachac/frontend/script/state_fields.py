@@ -89,6 +89,7 @@ class FieldTable(NamedTuple):
     text that programs contain without quotes.
     """
 
+    owner: FieldOwner
     others: bool
     shapes: tuple[tuple[str, str], ...]
     missing: tuple[str, ...]
@@ -114,6 +115,7 @@ def field_table(names: Collection[str], owner: FieldOwner, type_: StateType) -> 
         if row is not None and (key in own or _is_field(key, owner, type_))
     ]
     return FieldTable(
+        owner=owner,
         others=any(key not in own and key not in known for key in names),
         shapes=tuple(row for row in shapes if row[0] not in _READ_ELSEWHERE),
         missing=tuple(key for key in required if key not in names),
@@ -129,7 +131,6 @@ def field_table(names: Collection[str], owner: FieldOwner, type_: StateType) -> 
 def read_fields(
     name: Word,
     entries: Entries,
-    owner: FieldOwner,
     type_: StateType,
     table: FieldTable,
     report: Report,
@@ -142,12 +143,13 @@ def read_fields(
     `table` is that of the names of `entries`. `scope` are the params in its scope; `inner` is its
     name in the sub-script, if it is called.
     """
+    owner = table.owner
     before = len(report)
     rejected: set[str | None] = set()
     if table.others:
         read, rejected = _known_fields(entries, owner, type_, report)
     else:
-        read = _fields_of_schema(table, entries, owner, report)
+        read = _fields_of_schema(table, entries, report)
     if len(report) > before and "transitions" in read:
         read["transitions"] = _meant_booleans(read["transitions"], type_, report, before)
     if owner != "base" or read.get("name") is None or is_known_wrong(entries["name"].value):
@@ -171,7 +173,7 @@ def read_fields(
     if missing:
         _report_missing(missing, entries, owner, type_, read, inner, report)
     if table.variables:
-        read["variables"] = tuple(_variables(table, entries, owner, type_))
+        read["variables"] = tuple(_variables(table, entries, type_))
     if owner == "base" and "function_name" in entries:
         check_unquoted(entries["function_name"].value, "name", report)
     for key, variable in table.unquoted:
@@ -324,14 +326,12 @@ def _known_fields(
     return read, meant
 
 
-def _fields_of_schema(
-    table: FieldTable, entries: Entries, owner: FieldOwner, report: Report
-) -> dict[str, Any]:
+def _fields_of_schema(table: FieldTable, entries: Entries, report: Report) -> dict[str, Any]:
     """The fields of the schema, read, of a state without unknown fields."""
     read: dict[str, Any] = {}
     for key, shape in table.shapes:
         value = _read(key, shape, entries[key], report)
-        if key in _FIELDS and (key != "name" or owner == "base"):
+        if key in _FIELDS and (key != "name" or table.owner == "base"):
             read[key] = value
     return read
 
@@ -514,13 +514,11 @@ def _check_list(value: Tree, report: Report) -> None:
         wrong(value, "keys", report)
 
 
-def _variables(
-    table: FieldTable, entries: Entries, owner: FieldOwner, type_: StateType
-) -> Iterator[Variable]:
+def _variables(table: FieldTable, entries: Entries, type_: StateType) -> Iterator[Variable]:
     """The variables of the state type that a script sets: all fields that are not the owner's."""
     for name, known in table.variables:
         entry, row = entries[name], schema.VARIABLES.get(name)
-        named = row is not None and row.shape == "name" and _is_field(name, owner, type_)
+        named = row is not None and row.shape == "name" and _is_field(name, table.owner, type_)
         if named and not isinstance(entry.value, Scalar):
             continue  # reported
         role = known.role if known is not None else ""
