@@ -12,7 +12,7 @@ from smachac.analysis.control_flow import Linear, absorbed, endless_states
 from smachac.analysis.definite_assignment import DataFlow, data_flow
 from smachac.analysis.error_recovery import absorbed_keys, absorbed_machine
 from smachac.analysis.expression_errors import Fault
-from smachac.analysis.expression_sites import ExpressionSite, expression_sites
+from smachac.analysis.expression_sites import ExpressionSite, faulty_sites
 from smachac.analysis.failure_paths import Failure, failures
 from smachac.analysis.filled_lists import filled_loops
 from smachac.analysis.item_reads import ItemRead, item_reads
@@ -230,8 +230,7 @@ class Context:
     @cached_property
     def expression_faults(self) -> list[tuple[ExpressionSite, Fault]]:
         """The type errors in the code of the script."""
-        sites = expression_sites(self._with_values.nodes, self.types, self.machine.state_types)
-        return [(site, fault) for site in sites for fault in site.faults()]
+        return [*faulty_sites(self._with_values.nodes, self.types, self.machine.state_types)]
 
     @cached_property
     def _filled_loops(self) -> frozenset[str]:

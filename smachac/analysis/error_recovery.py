@@ -9,7 +9,7 @@ from dataclasses import replace
 from operator import is_
 from typing import cast
 
-from smachac.analysis.accesses import scripted_steps, userdata_fields
+from smachac.analysis.accesses import scripted_steps
 from smachac.analysis.control_flow import is_open
 from smachac.diagnostics.source import NOWHERE
 from smachac.ir import nodes
@@ -25,6 +25,7 @@ from smachac.ir.nodes import (
     StateMachine,
     Value,
 )
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import outcome_names, outer_inputs, outer_outputs
 from smachac.ir.types import ANY, Type
 
@@ -89,7 +90,7 @@ def undeclared_reads(leaf: Leaf) -> Iterator[tuple[str, nodes.Expression]]:
         return
     inputs = {key.name for key in leaf.inputs}
     for _, code in called:
-        fields = userdata_fields(code.text)
+        fields = script_code(code.text).fields
         for key in fields.read if fields is not None else ():
             if key not in inputs:
                 inputs.add(key)

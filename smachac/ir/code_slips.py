@@ -9,8 +9,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from smachac.diagnostics.spelling import guesser_of
-from smachac.ir.code_places import python_tree
 from smachac.ir.python_code import TooDeepError, parse_code
+from smachac.ir.script_code import script_code
 
 
 class Slip(NamedTuple):
@@ -84,7 +84,7 @@ def corrected(text: str, found: list[Slip]) -> str | None:
         if slip.cure is None:
             return None
         text = text[: slip.start] + slip.cure + text[slip.end :]
-    return text if python_tree(text) is not None else None
+    return text if script_code(text).tree is not None else None
 
 
 def _spaced(tokens: list[_Token], at: int, word: str) -> str:

@@ -28,10 +28,10 @@ from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.class_facts import ANY, ClassFacts, Ending
-from smachac.ir.code_places import python_tree
 from smachac.ir.code_slips import texts_of
 from smachac.ir.nodes import Leaf
 from smachac.ir.outcome_names import PREEMPTED, fails, is_failure
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import outcome_names
 
 
@@ -221,7 +221,7 @@ def _hooks(facts: ClassFacts) -> str:
 def _text_alone(facts: ClassFacts, outcomes: Collection[str]) -> tuple[str, ...]:
     """The outcomes that the last line of `execute` has without `return`: one, or a choice."""
     end = facts.open_end
-    tree = python_tree(end.span.text) if end is not None and end.text == "text" else None
+    tree = script_code(end.span.text).tree if end is not None and end.text == "text" else None
     found = texts_of(tree) if tree is not None else ()
     return found if {*found} <= {*outcomes} else ()
 

@@ -10,7 +10,7 @@ from functools import reduce
 
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import FaultKind, expression_faults
-from smachac.analysis.expression_types import parsed, type_of_data
+from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.fixed_lists import lacks_entry
 from smachac.analysis.type_lattice import (
     BOOL,
@@ -36,6 +36,7 @@ from smachac.ir.class_facts import Part, Step, TableLookUp
 from smachac.ir.expressions import Binary, Call, Compare
 from smachac.ir.nodes import Data, Key, Leaf, Struct
 from smachac.ir.python_code import parse_code
+from smachac.ir.script_code import script_code
 from smachac.ir.types import ANY, Type
 
 MOST_ITEMS = 20
@@ -237,7 +238,7 @@ def wrong_operations(context: Context, kind: FaultKind) -> Iterator[Finding]:
         types = {key.name: key.type for key in type_.input_keys}
         lists = {name for name, type_ in types.items() if present(type_).name in ("list", "array")}
         for word in facts.operations:
-            tree = parsed(word.text)
+            tree = script_code(word.text).portable
             found = (
                 expression_faults(tree, mapping(types.items()), (facts.userdata,)) if tree else ()
             )

@@ -6,11 +6,9 @@ import ast
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from smachac.analysis.accesses import USERDATA
 from smachac.analysis.code_slots import (
     CodeSlot,
     accepts,
-    free_names,
     is_value,
     means,
     parameters,
@@ -47,6 +45,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import node_place, node_range, place_in
 from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.nodes import Expression, Node, VariableRole
+from smachac.ir.script_code import USERDATA, free_names
 from smachac.ir.types import ANY, Type
 
 

@@ -25,9 +25,10 @@ from smachac.analysis.type_lattice import (
 )
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree, parse
-from smachac.ir.code_places import attribute_place, node_place, python_tree
+from smachac.ir.code_places import attribute_place, node_place
 from smachac.ir.expressions import print_expression
 from smachac.ir.nodes import Data, Expression, Struct
+from smachac.ir.script_code import script_code
 from smachac.ir.types import Type
 
 LONGEST = 20_000
@@ -161,7 +162,7 @@ def _items(data: tuple[Data, ...], wanted: Type) -> Iterator[tuple[Data, Type]]:
 
 def place_of_fault(code: Expression, fault: Fault) -> Span:
     """The place of a fault: of the name of an attribute, or of the part of the expression."""
-    tree, part = python_tree(code.text), python_tree(print_expression(fault.expr))
+    tree, part = script_code(code.text).tree, script_code(print_expression(fault.expr)).tree
     text = ast.dump(part) if part is not None else ""
     for node in ast.walk(tree) if tree is not None else ():
         if isinstance(node, ast.expr) and type(node) is type(part) and ast.dump(node) == text:

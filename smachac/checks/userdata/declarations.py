@@ -8,13 +8,7 @@ from dataclasses import replace
 from itertools import groupby
 from typing import Literal
 
-from smachac.analysis.accesses import (
-    callback_names,
-    leaves_with_code,
-    unreceived_outputs,
-    userdata_fields,
-)
-from smachac.analysis.code_slots import free_in
+from smachac.analysis.accesses import callback_names, leaves_with_code, unreceived_outputs
 from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.error_recovery import undeclared_reads
@@ -44,6 +38,7 @@ from smachac.frontend.errors.script import number_before
 from smachac.ir import nodes
 from smachac.ir.leaf import functions, variable, variable_of
 from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, Unused
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import expressions, walk
 
 
@@ -384,7 +379,7 @@ def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
         if lacking is not None:
             yield lacking
             return
-    known = [userdata_fields(code.text) for code in called]
+    known = [script_code(code.text).fields for code in called]
     fields = [fields for fields in known if fields is not None]
     if len(fields) == len(known):
         used = {key for field in fields for key in (*field.read, *field.tested)}
@@ -392,7 +387,9 @@ def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
         used |= _meant_keys(undeclared, leaf.inputs) if undeclared else set()
         arguments = [key for key in leaf.inputs if key.role == "argument"]
         if any(key.name not in used for key in arguments):
-            used |= {name.id for code in called for name in free_in(code.text)}  # SM019
+            used |= {
+                name.id for code in called for name in script_code(code.text).free_names
+            }  # SM019
         yield from _unused_keys(path, leaf, arguments, used, "input")
     if chooses and not [*unknown_endings(path, leaf)] and meant_default(leaf) is None:
         yield from _unused_outcomes(path, leaf, conditions)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping
 
-from smachac.analysis.accesses import USERDATA, fields_of
-from smachac.analysis.code_slots import code_slots, free_names, userdata_parameter
+from smachac.analysis.code_slots import code_slots, userdata_parameter
 from smachac.analysis.context import Context
 from smachac.analysis.message_code import leaf_definitions
 from smachac.analysis.uses import place_of
@@ -16,6 +15,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.ir.leaf import variable_of
 from smachac.ir.message_types import PARTS
 from smachac.ir.nodes import DEFINITION_KINDS, Key, Leaf, StateType, VariableRole
+from smachac.ir.script_code import USERDATA, fields_of, free_names
 
 SENDERS: tuple[VariableRole, ...] = ("service_type", "action_type")
 """The roles of the types of what a state sends."""

@@ -21,8 +21,8 @@ from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser, words_of
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import Container, Node
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import outcome_names, outer_inputs
 from smachac.ir.types import ANY, Type
 
@@ -74,7 +74,7 @@ def unset_read(
         unread = unread_output(scope, missing.key) if is_searched else None
         fitting = _fitting_keys(missing, witness, types) if is_searched else []
         if isinstance(reader.node, nodes.Iterator) and isinstance(
-            python_tree(missing.key), ast.Lambda
+            script_code(missing.key).tree, ast.Lambda
         ):
             help = f"quotes make it the name of a key: write code as '`{missing.key}`'"
         elif unread is not None:
