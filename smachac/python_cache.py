@@ -165,7 +165,7 @@ def _known(record: Mapping[str, Any], read: Reader) -> Known:
         )
         steps = tuple(None if place is None else span(place) for place in data["steps"])
         severity = Severity(data["severity"])
-        kind = replace(CODES[data["code"]], firm=False)
+        kind = replace(CODES[data["code"]], unsuppressible=False)
         return Diagnostic(kind=kind, severity=severity, finding=finding, steps=steps)
 
     unknown = (UnknownPlace(span(place), str(reason)) for place, reason in record["unknown"])

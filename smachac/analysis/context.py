@@ -15,8 +15,8 @@ from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_sites import ExpressionSite, faulty_sites
 from smachac.analysis.failure_paths import Failure, failures
 from smachac.analysis.filled_lists import filled_loops
+from smachac.analysis.incremental_facts import Fact, IncrementalResult, Preorder, found_at
 from smachac.analysis.item_reads import ItemRead, item_reads
-from smachac.analysis.kept_facts import Fact, Found, Preorder, found_at
 from smachac.analysis.loaded_bodies import LoadingOrder, bodies_loaded
 from smachac.analysis.lost_outputs import Lost, lost_outputs
 from smachac.analysis.possible_outcomes import Endings, Judged, endings, judged
@@ -69,7 +69,7 @@ class Context:
         self._known = previous._facts if previous is not None else {}
         self._facts: Facts = {}
         self._found_before = previous._found if previous is not None else {}
-        self._found: dict[Fact, Found] = {}
+        self._found: dict[Fact, IncrementalResult] = {}
         self._of_machine: dict[Callable[[Context], object], object] = {}
 
     def of_container(self, fact: Callable[[C], T], path: str, container: C) -> T:

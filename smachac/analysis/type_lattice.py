@@ -32,10 +32,10 @@ class Misfit(NamedTuple):
     wanted: Type
 
 
-def is_open(type_: Type) -> bool:
+def is_unknown(type_: Type) -> bool:
     """Whether nothing is known of a type: `any`, `any?`, a word that names none."""
     if type_.name == "optional":
-        return is_open(inside(type_))
+        return is_unknown(inside(type_))
     return type_.name == "any" or (not type_.args and _is_unknown(type_.name))
 
 
@@ -82,7 +82,7 @@ def unit_of(type_: Type) -> str:
 @lru_cache(maxsize=10_000)
 def misfit(given: Type, wanted: Type) -> Misfit | None:
     """Why a value of one type may not be read as another; None where it may."""
-    if given == wanted or is_open(given) or is_open(wanted):
+    if given == wanted or is_unknown(given) or is_unknown(wanted):
         return None
     clash = Misfit("type", given, wanted)
     match given.name, wanted.name:
@@ -115,7 +115,7 @@ def misfit(given: Type, wanted: Type) -> Misfit | None:
             return _misfit_struct(given, wanted)
         case "mapping" | "record", "PoseStamped" | "JointState":
             return None
-        case "list" | "array" | "dict", name if name in STRUCTS and is_open(inside(given)):
+        case "list" | "array" | "dict", name if name in STRUCTS and is_unknown(inside(given)):
             return None
     if "/" in wanted.name or "." in wanted.name:
         literal = given.name in ("tuple", "mapping", "record")
@@ -142,7 +142,7 @@ def _misfit_records(given: Type, wanted: Type) -> Misfit | None:
     """Fields that only the given record has are allowed; one that it lacks must be optional."""
     own = fields(given)
     for name, item in fields(wanted).items():
-        if name not in own and item.name != "optional" and not is_open(item):
+        if name not in own and item.name != "optional" and not is_unknown(item):
             return Misfit("type", given, wanted)
     return _first(misfit(own[name], item) for name, item in fields(wanted).items() if name in own)
 
@@ -229,7 +229,7 @@ def join(one: Type, other: Type) -> Type:
     """The least type that both fit; `any` where there is none."""
     if one == other:
         return one
-    if is_open(one) or is_open(other):
+    if is_unknown(one) or is_unknown(other):
         return ANY
     if "none" in (one.name, other.name):
         return optional(other if one == NONE else one)
@@ -359,9 +359,9 @@ def widened(type_: Type) -> Type:
 
 def meet(one: Type, other: Type) -> Type:
     """The largest type that fits both, so that a key of it can be read as either; else `any`."""
-    if is_open(one) or one == other:
+    if is_unknown(one) or one == other:
         return other
-    if is_open(other):
+    if is_unknown(other):
         return one
     if "optional" in (one.name, other.name):
         inner = meet(present(one), present(other))
@@ -395,9 +395,9 @@ def _same_size(one: Type, other: Type) -> bool:
 
 def settled(written: Type, read: Type) -> Type:
     """The type of a key from what is written to it and what it is read as (`meet`)."""
-    if is_open(written):
+    if is_unknown(written):
         return read
-    if is_open(read) or not fits(written, read):
+    if is_unknown(read) or not fits(written, read):
         return widened(written)
     match written.name, read.name:
         case _, "optional" if written.name not in ("optional", "none"):

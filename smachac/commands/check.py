@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from smachac.diagnostics.baseline import Baseline
     from smachac.diagnostics.clusters import Cluster
     from smachac.diagnostics.diagnostic import Report
-    from smachac.driver import MachineCheck, Previous
+    from smachac.driver import IncrementalState, MachineCheck
     from smachac.frontend.files import Disk
     from smachac.pysource.coverage import Coverage
     from smachac.refactor.autofix import FixResult
@@ -144,7 +144,10 @@ def _codes_of(words: list[str]) -> list[str]:
 
 
 def _check_once(
-    arguments: Namespace, used: set[str], disk: Disk, previous: dict[str, Previous] | None = None
+    arguments: Namespace,
+    used: set[str],
+    disk: Disk,
+    previous: dict[str, IncrementalState] | None = None,
 ) -> int:
     """Check once; the exit code. The real paths of all files that were read go into `used`.
     `previous`: see `check_scripts`."""
@@ -158,7 +161,7 @@ def _check_once(
     paths = scripts_of(arguments.script, disk, python_finder(arguments))
     sim_rule = unreachable if arguments.sim else None
 
-    def check(disk: Disk, previous: dict[str, Previous] | None = None) -> Batch:
+    def check(disk: Disk, previous: dict[str, IncrementalState] | None = None) -> Batch:
         folders = arguments.scripts, arguments.templates
         cached = not (arguments.no_cache or arguments.watch or arguments.changed_since)
         others = sim_rule is None and previous is None and not disk.texts
@@ -398,7 +401,7 @@ def _watch(arguments: Namespace) -> int:
     from smachac.frontend.files import Disk, stamps
 
     disk = Disk(in_pieces=True)  # files that did not change are read and parsed once
-    previous: dict[str, Previous] = {}
+    previous: dict[str, IncrementalState] = {}
     known: set[str] = set()
     while True:
         before = stamps(_watched(arguments, known))

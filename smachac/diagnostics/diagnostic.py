@@ -36,7 +36,8 @@ class Severity(Enum):
 class Code:
     """A kind of finding: permanent code, name of the fault, usual severity, explanation.
 
-    `firm`: its errors leave no machine that a target could print, so nothing silences them.
+    `unsuppressible`: its errors leave no machine that a target could print, so no setting hides
+    them.
     `effect`: what happens if the fault is left; empty if the messages contain it.
     """
 
@@ -44,7 +45,7 @@ class Code:
     name: str
     severity: Severity
     explanation: str
-    firm: bool = False
+    unsuppressible: bool = False
     effect: str = ""
 
 
@@ -185,11 +186,11 @@ class Problem(Generic[P]):
 
 
 def problem(
-    code: str, name: str, severity: Severity, *, effect: str = "", firm: bool = True
+    code: str, name: str, severity: Severity, *, effect: str = "", unsuppressible: bool = True
 ) -> Callable[[Callable[P, Finding]], Problem[P]]:
     """Make a problem of the function that makes its finding.
 
-    An error is firm, if nothing else is said: a script with such a fault has no meaning.
+    An error is unsuppressible, if nothing else is said: a script with such a fault has no meaning.
     """
 
     def declare(function: Callable[P, Finding]) -> Problem[P]:
@@ -198,7 +199,7 @@ def problem(
             name=name,
             severity=severity,
             explanation=function.__doc__ or "",
-            firm=firm and severity is Severity.ERROR,
+            unsuppressible=unsuppressible and severity is Severity.ERROR,
             effect=effect,
         )
         return Problem(entry, function)

@@ -62,7 +62,7 @@ class Guesser:
             nearest = next(iter(parts), None)
         return None if nearest is None or are_unlike(word, nearest) else nearest
 
-    def sure(self, word: str) -> str | None:
+    def unique_match(self, word: str) -> str | None:
         """The only candidate that is one slip away and has the same digits, or None."""
         index = self._slips()
         near = [slip for slip in slips(word) if slip in index]

@@ -121,7 +121,7 @@ def read_project(
     texts: dict[str, tuple[str, ...]] = {}
     policy, ros, bounds = Policy(), DEFAULT_ROS, Bounds()
     given = settings
-    settings = _with_meant_settings(settings)
+    settings = _with_recovered_settings(settings)
     for key in given:
         if key == "tool" and path.name == "smachac.toml" and _tool(data) is not None:
             message = "`[tool.smachac]` is for pyproject.toml; all of smachac.toml is for smachac"
@@ -162,10 +162,10 @@ def read_project(
     )
 
 
-def _with_meant_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
+def _with_recovered_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     """The settings, with those of unknown names under the names that are meant, where that is
     certain: then one misspelt name is one finding."""
-    sure = guesser(SETTINGS).sure
+    sure = guesser(SETTINGS).unique_match
     meant = {key: sure(key) if key not in SETTINGS else key for key in settings}
     names = {key: name if name not in settings else key for key, name in meant.items()}
     return {names[key] or key: value for key, value in settings.items()}
@@ -287,7 +287,7 @@ def _severities(
             arguments = ("severity", code, word)
             help = "did you mean `off`?" if word in _WORDS_FOR_OFF else _near(word, LEVELS)
             _wrong(source, code, message, help, report, arguments, at_value=True)
-        elif codes and code in codes and codes[code].firm and word != "error":
+        elif codes and code in codes and codes[code].unsuppressible and word != "error":
             help = "remove the line: no program can be generated with this fault"
             _wrong(source, code, f"{code} is always an error", help, report, ("firm", code))
         else:

@@ -168,7 +168,7 @@ def _misspelt_lambdas(tokens: list[_Token]) -> Iterator[Slip]:
         has_argument = after.kind == "name" or (after.text == ":" and at == 0)
         if token.kind != "name" or token.text == "lambda" or not (starts and has_argument):
             continue
-        if guesser_of(("lambda",)).sure(token.text) is not None:
+        if guesser_of(("lambda",)).unique_match(token.text) is not None:
             what = f"Python has no `{token.text}`"
             yield Slip(token.start, token.end, what, "did you mean `lambda`?", "lambda")
 

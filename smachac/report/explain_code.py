@@ -69,7 +69,7 @@ def render_code(code: Code) -> str:
     """The output of `smachac explain` for a code, without a line feed at the end."""
     parts = explanation(code)
     prose = [parts.summary, *parts.reason.split("\n\n")]
-    firm = ", firm" if code.firm else ""
+    firm = ", firm" if code.unsuppressible else ""
     lines = [f"{code.code} {code.name} ({code.severity.value}{firm})"]
     lines += [fill(text, WIDTH, break_on_hyphens=False) for text in prose]
     for title, files in (("Wrong", parts.wrong), ("Right", parts.right)):
@@ -126,7 +126,7 @@ def _sections(known: Mapping[str, Code]) -> Iterator[str]:
 def render_section(code: Code) -> str:
     """The explanation of a code as Markdown, without its heading."""
     parts = explanation(code)
-    firm = ", firm" if code.firm else ""
+    firm = ", firm" if code.unsuppressible else ""
     lines = [f"*{code.severity.value}{firm}*: {parts.summary}", parts.reason]
     for title, files in (("Wrong:", parts.wrong), ("Right:", parts.right)):
         if files:

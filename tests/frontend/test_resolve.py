@@ -171,8 +171,8 @@ def test_state_types_are_looked_up_in_few_places() -> None:
     ]
     assert users == [
         "smachac/commands/new.py",
-        "smachac/frontend/script/kept.py",
         "smachac/frontend/script/resolve.py",
+        "smachac/frontend/script/resolve_cache.py",
         "smachac/lsp/complete_templates.py",
         "smachac/lsp/facts.py",
         "smachac/lsp/session.py",

@@ -185,7 +185,9 @@ def test_a_mild_finding_of_a_firm_code_can_be_silenced() -> None:
 SOFT = [
     code
     for code in CODES.values()
-    if not code.firm and code.severity is Severity.ERROR and MAIN in explanation(code).wrong
+    if not code.unsuppressible
+    and code.severity is Severity.ERROR
+    and MAIN in explanation(code).wrong
 ]
 
 

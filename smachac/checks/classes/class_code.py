@@ -117,7 +117,7 @@ def _wrong_returns(
         if word.text not in outcomes and not again:
             does = "can return" if ending.possible else "returns"
             near = f"write `{ending.meant}`" if ending.meant is not None else None
-            near = near or did_you_mean(_meant(leaf, word.text, guess))
+            near = near or did_you_mean(_suggested(leaf, word.text, guess))
             near = near or _without_tuple(word.text, outcomes)
             if ending.silent:
                 near = f"end each path of `{ending.silent}` with a `return`; {known}"
@@ -264,9 +264,9 @@ def _or_declare(ending: Ending, leaf: Leaf) -> str:
     return f", or add `{word.text}` to the outcomes of `{leaf.type}` in {where}"
 
 
-def _meant(leaf: Leaf, word: str, guess: Guesser) -> str | None:
+def _suggested(leaf: Leaf, word: str, guess: Guesser) -> str | None:
     """The outcome that was probably meant: a failure for the name of a failure."""
-    near = guess.sure(word)
+    near = guess.unique_match(word)
     if near is not None:
         return near
     near = guess(word)
@@ -378,7 +378,9 @@ def never_returned(context: Context) -> Iterator[Finding]:
         declared = names if facts.outcomes is None else [word.text for word in facts.outcomes]
         wrong = returned.difference(names)  # SM309: probably one of the others was meant
         guess = guesser(names)
-        returned.update(near for word in wrong if (near := _meant(leaf, word, guess)) == PREEMPTED)
+        returned.update(
+            near for word in wrong if (near := _suggested(leaf, word, guess)) == PREEMPTED
+        )
         only_stops = type_.prints_itself or wrong
         for name in names:
             checked = name == PREEMPTED or not only_stops

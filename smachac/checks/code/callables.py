@@ -35,7 +35,7 @@ from smachac.checks.code.function_results import (
 from smachac.checks.code.outcome_results import wrong_outcomes
 from smachac.checks.help_text import calls, in_quotes_for, other_place
 from smachac.checks.rule import rule
-from smachac.checks.types.number_help import number_meant
+from smachac.checks.types.number_help import suggested_number
 from smachac.checks.types.type_origins import written
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Edit
@@ -553,7 +553,7 @@ def _number_help(presets: list[TypeFlow]) -> str:
     """The help for a duration that is no number: the number, where a text of the script was meant
     as one."""
     texts = (preset.value for preset in presets if isinstance(preset.value, str))
-    meant = (number_meant(text, SECONDS) for text in texts)
+    meant = (suggested_number(text, SECONDS) for text in texts)
     found = next((help for help in meant if help is not None), None)
     return found or "return a number, for example with `float(...)`"
 

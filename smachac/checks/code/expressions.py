@@ -36,7 +36,7 @@ from smachac.ir.traversal import expressions, values
     "SM016",
     "bad-expression",
     Severity.ERROR,
-    firm=True,
+    unsuppressible=True,
     effect="Python cannot start a program with this code, so no program is generated",
 )
 def bad_expression(context: Context) -> Iterator[Finding]:

@@ -86,7 +86,7 @@ class _Attribute(NamedTuple):
     "SM019",
     "undefined-name",
     Severity.ERROR,
-    firm=True,
+    unsuppressible=True,
     effect="Python would stop at this name with a NameError",
 )
 def undefined_name(context: Context) -> Iterator[Finding]:
@@ -391,7 +391,7 @@ def _own_fix(use: _Use, own: Sequence[Source]) -> NameFix | None:
         names.update(word for pair in _DEFINED.findall(source.text) for word in pair if word)
         names.update(word for line in _IMPORTED.findall(source.text)
                      for word in _WORDS.findall(line))  # fmt: skip
-    near = guesser(sorted(names)).sure(use.name.id)
+    near = guesser(sorted(names)).unique_match(use.name.id)
     if near is None:
         return None
     return NameFix(f"did you mean `{near}`?", edits=_edits(use, near))

@@ -16,7 +16,12 @@ from smachac.analysis.type_lattice import fits, present
 from smachac.checks.edits import likely, listing, with_input, with_remapping
 from smachac.checks.help_text import calls, did_you_mean
 from smachac.checks.ros.message_calls import CHECK_FIELDS, call_faults, message_calls
-from smachac.checks.ros.message_keys import TYPE_KEY, lacks_type_key, remapped_field, type_key_meant
+from smachac.checks.ros.message_keys import (
+    TYPE_KEY,
+    lacks_type_key,
+    remapped_field,
+    suggested_type_key,
+)
 from smachac.checks.ros.message_reads import (
     code_places,
     described,
@@ -30,10 +35,10 @@ from smachac.checks.ros.message_reads import (
 )
 from smachac.checks.ros.message_types import (
     call_of,
-    meant_type,
     missing_types,
     names_type,
     no_type,
+    suggested_type,
     type_in_place_of_part,
     word_in,
 )
@@ -295,7 +300,7 @@ def _untyped_mappings(context: Context, path: str, leaf: Leaf) -> Iterator[Findi
         for flow in flows:
             if flow.how == "value" and isinstance(flow.value, Struct):
                 add = listing([leaf], "input_keys", TYPE_KEY)
-                meant = type_key_meant(context.routes.nodes.get(path.rpartition("/")[0]))
+                meant = suggested_type_key(context.routes.nodes.get(path.rpartition("/")[0]))
                 help = f"{add}, and set the key to the type, as in `{TYPE_KEY}: std_msgs/Bool`"
                 if meant is not None:
                     help = add
@@ -332,7 +337,7 @@ def _wrong_messages(
     absent = missing.get(("msg", type_))
     if absent is not None and absent.other is None:
         package, *_, name = re.split(r"[/.]", type_)
-        meant = meant_type(name, "msg", absent)
+        meant = suggested_type(name, "msg", absent)
         yield literal_finding(given[0], no_type(package, name, "msg"), meant, (package, name))
     messages = [definition.part("message") for definition in found.get(("msg", type_), ())]
     effect = f"`{leaf.name}` ends with `aborted`: the message is never used"

@@ -18,7 +18,7 @@ from smachac.analysis.unset_reads import container_name
 from smachac.analysis.uses import place_of
 from smachac.checks import notation
 from smachac.checks.help_text import CALLED_HERE, calls, did_you_mean, other_place
-from smachac.checks.outcomes.condition_outcomes import meant_default, unknown_endings
+from smachac.checks.outcomes.condition_outcomes import suggested_default, unknown_endings
 from smachac.checks.rule import rule
 from smachac.checks.userdata.unsent_keys import unsent_keys
 from smachac.checks.userdata.unwritten_keys import (
@@ -170,7 +170,7 @@ def _misnamed_outputs(scope: UserdataScope) -> tuple[tuple[Node, Remap, str], ..
     guess = guesser(read)
     found: list[tuple[Node, Remap, str]] = []
     for child, remap, key in remapped:
-        meant = guess.sure(remap.to) if remap.to not in read else None
+        meant = guess.unique_match(remap.to) if remap.to not in read else None
         if meant is None or key.name in {input_.name for input_ in child.inputs}:
             continue
         if all(misfit(key.type, member.type) is None for member in read[meant]):
@@ -253,7 +253,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
         for key in container.outputs:
             if key.name not in set_:
                 own = {output.name for output in container.outputs}
-                meant = guesser(sorted(set_ - own)).sure(key.name)
+                meant = guesser(sorted(set_ - own)).unique_match(key.name)
                 finding = _unused(scope.path, container, key, "output", meant)
                 is_read = (scope.path, key.name) in read
                 yield replace(finding, severity=Severity.ERROR) if is_read else finding
@@ -333,7 +333,7 @@ def _unused_word(unused: Unused, root: str) -> Finding:
     """SM306 for a param or type of the script that nothing uses."""
     what, word, via, known, kept = unused
     outside = (call for call in via if call.source is not word.span.source)
-    meant = guesser(known).sure(word.text)
+    meant = guesser(known).unique_match(word.text)
     help = did_you_mean(meant)
     if help is None and known:
         help = f"the params that are used here are {listed(known)}"
@@ -384,14 +384,14 @@ def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
     if len(fields) == len(known):
         used = {key for field in fields for key in (*field.read, *field.tested)}
         undeclared = [key for key, _ in undeclared_reads(leaf)]
-        used |= _meant_keys(undeclared, leaf.inputs) if undeclared else set()
+        used |= _suggested_keys(undeclared, leaf.inputs) if undeclared else set()
         arguments = [key for key in leaf.inputs if key.role == "argument"]
         if any(key.name not in used for key in arguments):
             used |= {
                 name.id for code in called for name in script_code(code.text).free_names
             }  # SM019
         yield from _unused_keys(path, leaf, arguments, used, "input")
-    if chooses and not [*unknown_endings(path, leaf)] and meant_default(leaf) is None:
+    if chooses and not [*unknown_endings(path, leaf)] and suggested_default(leaf) is None:
         yield from _unused_outcomes(path, leaf, conditions)
 
 
@@ -400,7 +400,7 @@ def _without_conditions(path: str, leaf: Leaf) -> Finding | None:
     possible = {variable(leaf, "default_outcome"), leaf.catches}
     outcomes = [outcome for outcome in leaf.outcomes if outcome.name not in possible]
     held = variable_of(leaf, "conditions")
-    if not outcomes or held is None or meant_default(leaf) is not None:
+    if not outcomes or held is None or suggested_default(leaf) is not None:
         return None
     names = [outcome.name for outcome in outcomes]
     keys = [name if is_plain(name) else f"'{name}'" for name in names]
@@ -445,7 +445,7 @@ def _unused_keys(
     return (_unused(path, leaf, key, role) for key in keys if key.name not in names)
 
 
-def _meant_keys(wrong: Iterable[str], known: Iterable[Key]) -> set[str]:
+def _suggested_keys(wrong: Iterable[str], known: Iterable[Key]) -> set[str]:
     """The likely keys behind misspelt names (SM308, SM310)."""
     guess = guesser(key.name for key in known)
     return {name for key in wrong if (name := guess(key)) is not None}

@@ -238,7 +238,7 @@ def _undeclared_accesses(
             span = key_place(code, key)
             added, near = listing([leaf], "input_keys", key), None
             if key not in around:
-                near = guess.sure(key)
+                near = guess.unique_match(key)
                 added += f", and set it before, for example in `userdata: {{{key}: ...}}`"
             yield Finding(
                 span=span,

@@ -10,7 +10,7 @@ from itertools import islice
 from smachac.analysis.def_use import written_on
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.type_inference import Types
-from smachac.analysis.type_lattice import is_open
+from smachac.analysis.type_lattice import is_unknown
 from smachac.analysis.unset_reads import Missing, Witness, container_name, reader_at
 from smachac.checks import notation
 from smachac.checks.edits import likely, listing, with_field, with_input, with_remapping
@@ -143,7 +143,7 @@ def _fitting_keys(missing: Missing, witness: Witness, types: Types) -> list[str]
     if declared is None or declared.span.source is reader.node.span.source:
         return []
     wanted = types.inputs.get((reader.path, reader.key), ANY)
-    if witness.inner is not None and is_open(wanted):
+    if witness.inner is not None and is_unknown(wanted):
         wanted = types.inputs.get((witness.inner.path, witness.inner.key), ANY)
     return fitting_keys(types, missing, reader.node, wanted)
 
@@ -161,7 +161,7 @@ def fitting_keys(types: Types, missing: Missing, node: Node, wanted: Type) -> li
         is_read = key in scope.uses.read or key in scope.outputs
         if not may_be(types, scope, key, wanted) or (not is_read and near(key) is not None):
             continue
-        if not is_open(wanted) and not is_open(types.keys.get((scope.path, key), ANY)):
+        if not is_unknown(wanted) and not is_unknown(types.keys.get((scope.path, key), ANY)):
             (known if is_read else both).append(key)
         elif not is_read:
             unread.append(key)

@@ -229,9 +229,11 @@ def _unknown_remaps_of(path: str, node: Node) -> Iterator[Finding]:
     own = list(dict.fromkeys(key.name for key in (*node.inputs, *node.outputs)))
     unknown = unknown_remaps(node)
     guess = guesser(sorted({*own} - {remap.key for remap in node.remaps}))
-    turned = [remap for remap in unknown if remap.to in own and guess.sure(remap.key) is None]
+    turned = [
+        remap for remap in unknown if remap.to in own and guess.unique_match(remap.key) is None
+    ]
     for remap in unknown:
-        meant, certain = guess(remap.key), guess.sure(remap.key)
+        meant, certain = guess(remap.key), guess.unique_match(remap.key)
         known = f"use one of its keys: {listed(own)}" if own else "remove it: the state has no keys"
         if remap in turned:
             if remap is not turned[0]:

@@ -151,7 +151,7 @@ def read_fields(
     else:
         read = _fields_of_schema(table, entries, report)
     if len(report) > before and "transitions" in read:
-        read["transitions"] = _meant_booleans(read["transitions"], type_, report, before)
+        read["transitions"] = _recovered_booleans(read["transitions"], type_, report, before)
     if owner != "base" or read.get("name") is None or is_known_wrong(entries["name"].value):
         read["name"] = name
     if owner == "state" and "default_outcome" in entries and "default_outcome" not in read:
@@ -183,7 +183,7 @@ def read_fields(
     return read
 
 
-def _meant_booleans(steps: Pairs, type_: StateType, report: Report, begin: int) -> Pairs:
+def _recovered_booleans(steps: Pairs, type_: StateType, report: Report, begin: int) -> Pairs:
     """The transitions, with the outcomes `true` and `false` of the type in place of other words for
     booleans, such as `yes`; the help of their finding (SM004) has the outcome that is meant. The
     findings of this state begin at the number `begin`."""
@@ -208,7 +208,7 @@ def accepts(type_: StateType, name: str) -> bool:
     return name in type_.variables or type_.any_variable
 
 
-def with_meant_fields(
+def with_recovered_fields(
     entries: dict[str, Entry], owner: FieldOwner, type_: StateType, report: Report
 ) -> dict[str, Entry]:
     """The fields, with those of unknown names also under the names that are meant, where that is
@@ -226,7 +226,9 @@ def with_meant_fields(
     if not unknown:
         return entries
     guess = guesser_of((*schema.names_for(owner), *type_.variables))
-    meant = {guess.sure(str(entries[key].key.value)): entries[key] for key in reversed(unknown)}
+    meant = {
+        guess.unique_match(str(entries[key].key.value)): entries[key] for key in reversed(unknown)
+    }
     roles: dict[str, str] = {
         variable.role: name for name, variable in type_.variables.items() if variable.role
     }
@@ -237,13 +239,13 @@ def with_meant_fields(
     return {name: entry for name, entry in meant.items() if name is not None} | entries
 
 
-def params_meant(entries: Entries) -> Entry | None:
+def recovered_params(entries: Entries) -> Entry | None:
     """The field that is certainly a misspelt `params` (SM003)."""
     if _ALL_FIELDS.issuperset(entries):
         return None
     for key, entry in entries.items():
         is_map = key not in schema.VARIABLES and isinstance(entry.value, Map)
-        if is_map and guesser_of(FIELDS_OF_STATES).sure(key) == "params":
+        if is_map and guesser_of(FIELDS_OF_STATES).unique_match(key) == "params":
             return entry
     return None
 
@@ -276,7 +278,7 @@ def _known_fields(
     """The fields of the schema, read, and for each unknown field the one that it looks like. An
     outcome beside the transitions is read as one of them."""
     read: dict[str, Any] = {}
-    strays: list[tuple[Word, Word]] = []
+    misplaced_transitions: list[tuple[Word, Word]] = []
     meant: set[str | None] = set()
     known_here, unknown = schema.OWN_FIELDS[owner], 0
     for key, entry in entries.items():
@@ -310,7 +312,7 @@ def _known_fields(
             help = f"`{word.text}` is an input key: {as_key}" if as_key is not None else None
             target = name_of(entry.value) if key in _outcomes(entries, type_) else None
             if target is not None:
-                strays.append((word, target))
+                misplaced_transitions.append((word, target))
                 help = f"`{word.text}` is an outcome: write its transition inside `transitions:`"
             needed = sure if sure is not None and _is_required(sure, owner, type_) else None
             free = [name for name in (*known, *own) if name not in entries]
@@ -321,8 +323,8 @@ def _known_fields(
             meant.add(guesser_of((*dict.fromkeys((*known, *own)),))(word.text))
             if len(own) == 1:
                 meant.add(own[0])  # the message names the only variable
-    if strays:
-        read["transitions"] = (*read.get("transitions", ()), *strays)
+    if misplaced_transitions:
+        read["transitions"] = (*read.get("transitions", ()), *misplaced_transitions)
     return read, meant
 
 

@@ -49,7 +49,7 @@ def explain_aliases(aliases: Aliases, source: Source, report: Report) -> set[str
             meant = _filled(finding.arguments[0], aliases)
             help = f"an interface does not use the `types:` of a script: write `{meant}`"
             report[index] = replace(item, finding=replace(finding, help=help))
-        elif unknown and finding.span.source is source and (near := guess.sure(unknown)):
+        elif unknown and finding.span.source is source and (near := guess.unique_match(unknown)):
             edits = respelt(Word(unknown, finding.span), near)
             help = f"did you mean `{near}`?"
             report[index] = replace(item, finding=replace(finding, help=help, edits=edits))
@@ -183,7 +183,9 @@ def _respelt(tree: Map, aliases: Aliases, report: Report) -> Map:
     wrong = []
     for entry in tree.entries:
         name = str(entry.key.value)
-        field = name if name in PRESET_FIELDS else guess.sure(name) or _OTHER_FIELDS.get(name)
+        field = (
+            name if name in PRESET_FIELDS else guess.unique_match(name) or _OTHER_FIELDS.get(name)
+        )
         if field is None or field in meant:
             return tree
         if field != name:

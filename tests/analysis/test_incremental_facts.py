@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from smachac.analysis.kept_facts import Found, Preorder, found_at
+from smachac.analysis.incremental_facts import IncrementalResult, Preorder, found_at
 from smachac.ir.nodes import Leaf, Node, StateMachine
 from smachac.ir.traversal import walk
 from tests.support.ir_machines import leaf, machine
@@ -34,7 +34,7 @@ def test_what_has_not_changed_is_taken_from_the_machine_before() -> None:
         assert not isinstance(node, Leaf)
         yield from (f"{path}/{each.name}" for each in node.children if isinstance(each, Leaf))
 
-    def found(root: StateMachine, before: Found | None) -> Found:
+    def found(root: StateMachine, before: IncrementalResult | None) -> IncrementalResult:
         visited.clear()
         return found_at(containers(root), leaves, (), before)
 
