@@ -76,7 +76,8 @@ def _choice(choice: Type | int | str) -> str:
     return str(choice)
 
 
-# Cached, because scripts and interfaces repeat few types: parsing `list[Pose]` costs 60 us.
+# Cached, because scripts and interfaces repeat few types: without, a check of 1,000 states whose
+# keys have types takes 45 % more instructions.
 @lru_cache(maxsize=1000)
 def parse_type(text: str) -> Type | None:
     """The type of a text; None if the text is no type, is too long or too deep.
