@@ -157,7 +157,7 @@ def test_a_fix_that_adds_an_error_is_not_written(
         " transitions: {ok: dnoe}}\n"
     )
     (folder / "main.yml").write_text(text)
-    assert main(["check", "main.yml", "--fix", *options]) == 1  # firm codes count all the same
+    assert main(["check", "main.yml", "--fix", *options]) == 1  # such codes count too
     # Both keys would be `transitions`; the target is corrected on its own.
     assert (folder / "main.yml").read_text() == text.replace("dnoe", "done")
     assert "(1 fixed)" in capsys.readouterr().out
