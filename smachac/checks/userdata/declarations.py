@@ -20,16 +20,15 @@ from smachac.checks import notation
 from smachac.checks.help_text import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.outcomes.condition_outcomes import suggested_default, unknown_endings
 from smachac.checks.rule import rule
-from smachac.checks.userdata.unsent_keys import unsent_keys
-from smachac.checks.userdata.unwritten_keys import (
+from smachac.checks.userdata.unused_keys import (
     Unwritten,
     read_unwritten,
     unreceived_finding,
+    unsent_keys,
     unwritten_finding,
     unwritten_keys,
 )
 from smachac.checks.userdata.used_keys import sees_everything, used_in
-from smachac.checks.userdata.word_loops import words_as_lists
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import guesser, is_plain, respelt
@@ -449,3 +448,26 @@ def _suggested_keys(wrong: Iterable[str], known: Iterable[Key]) -> set[str]:
     """The likely keys behind misspelt names (SM308, SM310)."""
     guess = guesser(key.name for key in known)
     return {name for key in wrong if (name := guess(key)) is not None}
+
+
+def words_as_lists(path: str, loop: nodes.Iterator) -> Iterator[Finding]:
+    """The finding on an iterator over the name of one of its input keys, which its state does not
+    read."""
+    read = {key.name for child in loop.children for key in child.inputs}
+    for key in loop.inputs if not loop.sugar else ():
+        if loop.items is not None and loop.items.data == (key.name,) and key.name not in read:
+            yield word_as_list(path, loop, key.name)
+
+
+def word_as_list(path: str, loop: nodes.Iterator, key: str) -> Finding:
+    """The finding on a loop over one text, which is the name of a key."""
+    return Finding(
+        span=loop.items_span,
+        message=f"`{loop.name}` runs once, for the text `{key}`, not for the items of the key"
+        f" `{key}`",
+        arguments=("items", key),
+        help=f"write `it: {key}`",
+        effect="the state gets the name of the key in place of an item",
+        related=calls(loop, loop.items_span),
+        node=path,
+    )

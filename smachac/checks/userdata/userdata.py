@@ -17,7 +17,7 @@ from smachac.checks.ros.message_keys import remapped_fields
 from smachac.checks.rule import rule
 from smachac.checks.userdata.initial_presets import missing_together, together_finding
 from smachac.checks.userdata.unset_read_findings import fitting_keys, unset_read
-from smachac.checks.userdata.unwritten_keys import read_unwritten
+from smachac.checks.userdata.unused_keys import read_unwritten
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import NOWHERE, Span, Word
