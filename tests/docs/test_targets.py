@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import smachac
+from smachac.targets import target_names
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "targets.md").read_text("utf-8")
@@ -39,6 +40,11 @@ def missing(block: str, header: str) -> str | None:
             return text
         at = place.end()
     return None
+
+
+def test_each_target_has_a_section() -> None:
+    headings = re.findall(r"^## (.+)$", PAGE, re.MULTILINE)
+    assert set(target_names()) <= {name for heading in headings for name in heading.split(", ")}
 
 
 def test_blocks_are_found() -> None:
