@@ -151,7 +151,7 @@ def type_of_call(expression: Expression, userdata: Names) -> Type:
 
 
 def _is_format(text: str) -> bool:
-    """Whether code is a function that returns an f-string, which `parsed` does not read."""
+    """Whether code is a function that returns an f-string, which is not portable."""
     tree = script_code(text).tree if "{" in text else None
     return isinstance(tree, ast.Lambda) and isinstance(tree.body, ast.JoinedStr)
 

@@ -1,4 +1,9 @@
-"""Fields of messages that functions read, and values of messages with which they calculate."""
+"""Findings on code that uses messages (SM512): fields that a message does not have, and values of
+other types in comparisons and operations.
+
+The code is that of functions of the script (message_fields.py) or of the user's classes
+(messages_in_classes.py); the fields that it uses are those of analysis/message_code.py.
+"""
 
 from __future__ import annotations
 

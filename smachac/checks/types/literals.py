@@ -1,4 +1,5 @@
-"""Findings about literals: their place, also in the call of a sub-script, and their reader."""
+"""Findings about literals, for the rules on types, robots and messages: the place of a literal or
+its part, also in the call of a sub-script, and the state that reads it."""
 
 from __future__ import annotations
 

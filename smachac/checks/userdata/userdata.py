@@ -1,4 +1,5 @@
-"""Rules on the flow of userdata: unset keys, remappings, keys that do not cross a container."""
+"""Rules on the flow of userdata: unset keys (SM301), remappings (SM302), and keys that do not cross
+a container (SM303, SM307). The flow is that of analysis/definite_assignment.py."""
 
 from __future__ import annotations
 
