@@ -209,8 +209,8 @@ def check_scripts(
             alone.append(path)
             continue
         if processes > 1 and not analyses:  # the first script has loaded what all need
-            left = [each for each in paths if each not in (path, *alone)
-                    and (python is None or each.suffix != PYTHON_SUFFIX)]  # fmt: skip
+            left = [other for other in paths if other not in (path, *alone)
+                    and (python is None or other.suffix != PYTHON_SUFFIX)]  # fmt: skip
             from smachac.parallel import results_of
 
             results = results_of(checker.light, left, disk, processes)
@@ -315,5 +315,5 @@ def _without(caller: Source, report: Report) -> Iterator[Diagnostic]:
         if item.span.source is caller or item.code in ("SM015", "SM019"):
             continue
         finding = item.finding
-        related = tuple(each for each in finding.related if each.span.source is not caller)
+        related = tuple(place for place in finding.related if place.span.source is not caller)
         yield replace(item, finding=replace(finding, related=related))

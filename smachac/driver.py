@@ -63,7 +63,7 @@ _PROBLEMS = (
 CODES: Mapping[str, Code] = {
     code.code: code
     for code in sorted(
-        [*(each.code for each in _PROBLEMS), *(each.code for each in checks.RULES)],
+        [*(problem.code for problem in _PROBLEMS), *(rule.code for rule in checks.RULES)],
         key=lambda code: code.code,
     )
 }
@@ -130,7 +130,7 @@ def analyse_script(
     source = script if isinstance(script, Source) else read_source(Path(script), report)
     if source is None:
         return Analysis(report=report)
-    folders = [[Path(folder) for folder in each] for each in (scripts, templates)]
+    folders = [[Path(folder) for folder in paths] for paths in (scripts, templates)]
     library = disk_library(
         Path(source.name), report, scripts=folders[0], templates=folders[1], codes=CODES
     )

@@ -134,7 +134,7 @@ def _data(item: Diagnostic) -> dict[str, Any]:
         "arguments": finding.arguments,
         "help": finding.help,
         "effect": finding.effect,
-        "related": [[_place(each.span), each.message] for each in finding.related],
+        "related": [[_place(place.span), place.message] for place in finding.related],
         "path": [[step.label, step.node, step.is_outcome] for step in finding.path],
         "node": finding.node,
         "group": finding.group,

@@ -16,7 +16,7 @@ def is_container(node: Node) -> bool:
 
 
 def containers(root: StateMachine) -> Preorder:
-    return Preorder([each for each in walk(root) if is_container(each[1])], is_container)
+    return Preorder([node for node in walk(root) if is_container(node[1])], is_container)
 
 
 def tree() -> StateMachine:
@@ -32,7 +32,7 @@ def test_what_has_not_changed_is_taken_from_the_machine_before() -> None:
     def leaves(path: str, node: Node) -> Iterator[str]:
         visited.append(path)
         assert not isinstance(node, Leaf)
-        yield from (f"{path}/{each.name}" for each in node.children if isinstance(each, Leaf))
+        yield from (f"{path}/{child.name}" for child in node.children if isinstance(child, Leaf))
 
     def found(root: StateMachine, before: IncrementalResult | None) -> IncrementalResult:
         visited.clear()

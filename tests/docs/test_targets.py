@@ -56,7 +56,7 @@ def test_blocks_are_found() -> None:
 
 @pytest.mark.parametrize(
     ("target", "folder", "block"),
-    [(target, *each) for target in ("cpp", "python") for each in shown(target)],
+    [(target, *item) for target in ("cpp", "python") for item in shown(target)],
 )
 def test_a_program_holds_what_is_shown_of_it(target: str, folder: str, block: str) -> None:
     files = smachac.compile(ROOT / "examples" / folder / "main.yml", target)

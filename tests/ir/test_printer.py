@@ -132,7 +132,7 @@ def test_the_notation_says_what_a_machine_is() -> None:
     assert str(move.inputs[0].type) == "float<rad>[7]"
     assert [step.origin for step in move.transitions] == ["written", "implicit"]
     assert both.join == "any"
-    assert [(each.child, each.outcome) for each in both.rules[0].when] == [
+    assert [(item.child, item.outcome) for item in both.rules[0].when] == [
         ("left arm", "done"),
         ("RIGHT", "done"),
     ]

@@ -135,7 +135,7 @@ def assert_proven(analysis: Analysis, cluster: Cluster) -> None:
     assert unknown(after) <= unknown(analysis)
     if unknown(after) < unknown(analysis):
         return
-    before, left = (serious(each) for each in (analysis, after))
+    before, left = (serious(one) for one in (analysis, after))
     assert len(left) < len(before)
     assert {key(item) for item in left} <= {key(item) for item in before}
 

@@ -52,8 +52,8 @@ def _plain(tree: Tree) -> Data:
             return [_plain(item) for item in items]
         case Map(entries=entries):
             found: dict[Data, Data] = {}
-            for each in entries:
-                found.setdefault(_plain(each.key), _plain(each.value))
+            for entry in entries:
+                found.setdefault(_plain(entry.key), _plain(entry.value))
             return found
 
 

@@ -46,11 +46,11 @@ def types_with_the_names(
         return (), ()
     steps = pairs_of(entries["transitions"].value) if "transitions" in entries else ()
     ends = {outcome.text for outcome, _ in steps}
-    types = [each for name in names if (each := find(name, used)) is not None]
-    fitting = [each for each in types if _has(each, used, ends)]
+    types = [type_ for name in names if (type_ := find(name, used)) is not None]
+    fitting = [type_ for type_ in types if _has(type_, used, ends)]
     common = words_of(word) - {"state"}
-    near = [each for each in fitting if words_of(each.name) & common]
-    found = tuple(each.name for each in near or fitting)
+    near = [type_ for type_ in fitting if words_of(type_.name) & common]
+    found = tuple(type_.name for type_ in near or fitting)
     return (found, used) if len(found) <= MOST_SUGGESTED else ((), ())
 
 
