@@ -266,16 +266,16 @@ def table(found: dict[str, dict[str, float]]) -> None:
     names = list(found)
     print(f"{'us a state':<12}" + "".join(f"{name:>12}" for name in names))
     plain = ("states", "count", "megabytes", "findings")
-    steps = sorted({step for each in found.values() for step in each} - {*plain})
+    steps = sorted({step for item in found.values() for step in item} - {*plain})
     for step in sorted(steps, key=lambda step: (step.startswith("SM"), step)):
         times = (1e6 * found[name].get(step, 0.0) / found[name]["states"] for name in names)
-        print(f"{step:<12}" + "".join(f"{each:12.2f}" for each in times))
+        print(f"{step:<12}" + "".join(f"{time_:12.2f}" for time_ in times))
     for what in plain:
         print(f"{what:<12}" + "".join(f"{found[name][what]:12.0f}" for name in names))
     ratios = (found[name]["check"] / found[name]["events"] for name in names)
-    print(f"{'of events':<12}" + "".join(f"{each:12.1f}" for each in ratios))
+    print(f"{'of events':<12}" + "".join(f"{ratio:12.1f}" for ratio in ratios))
     beyond = (found[name]["check"] - found[name]["parse"] for name in names)
-    print(f"{'beyond, s':<12}" + "".join(f"{each:12.2f}" for each in beyond))
+    print(f"{'beyond, s':<12}" + "".join(f"{item:12.2f}" for item in beyond))
 
 
 def main() -> None:

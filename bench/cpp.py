@@ -139,7 +139,7 @@ def speed(compiler: str, steps: int) -> Iterator[str]:
             ran = subprocess.run(
                 [program, "all", str(steps)], capture_output=True, text=True, check=True
             )
-            rows = {"ns": [float(each) for each in ran.stdout.split()]}
+            rows = {"ns": [float(part) for part in ran.stdout.split()]}
             if shutil.which("valgrind"):
                 rows["instructions"] = [instructions(program, COUNTED, way) for way in WAYS]
             for unit, (hand, alone, watched, writes, counted) in rows.items():
@@ -174,7 +174,7 @@ def stepped(compiler: str) -> Iterator[str]:
             )
             waits = [instructions(program, -COUNTED, way) for way in ("by_hand", "stepped")]
             cells = [f"{hand:.1f}", f"{own:.1f}", f"{own / hand:.2f}", f"{counted:.1f}"]
-            yield f"| {name} | {' | '.join([*cells, *(f'{each:.1f}' for each in waits)])} |"
+            yield f"| {name} | {' | '.join([*cells, *(f'{wait:.1f}' for wait in waits)])} |"
 
 
 FLASH_ENTRY = """
@@ -204,7 +204,7 @@ def flash() -> Iterator[str]:
         by_hand = machines.stepped_ring_by_hand(count)
         hand = HAND + by_hand + FLASH_ENTRY.format(machine="hand::Machine", running="")
         own = text + FLASH_ENTRY.format(machine="sm::Machine<>", running=".is_running()")
-        sizes = [_sizes(each) for each in (hand, own)]
+        sizes = [_sizes(item) for item in (hand, own)]
         ratio = sizes[1][0] / sizes[0][0]
         cells = [sizes[0][0], sizes[1][0], f"{ratio:.2f}", sizes[0][1], sizes[1][1]]
         yield f"| ring of {count} | {' | '.join(map(str, cells))} |"

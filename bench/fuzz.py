@@ -68,7 +68,7 @@ def projects() -> list[Files]:
                 found.append(files)
     for code in CODES.values():
         shown = explanation(code)
-        found += [dict(each) for each in (shown.wrong, shown.right) if each]
+        found += [dict(item) for item in (shown.wrong, shown.right) if item]
     return found
 
 

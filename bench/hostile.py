@@ -15,7 +15,8 @@ import resource
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 
 Input = Callable[[Path, int], list[str]]
@@ -70,22 +71,234 @@ def words(pattern: str, size: int) -> str:
     return ", ".join(pattern % {"n": number} for number in range(size))
 
 
+def letters(size: int) -> str:
+    """A name of so many letters."""
+    return "Ab_c" * (size // 4)
+
+
+SCRIPTS: Mapping[str, tuple[int, Callable[[int], str]]] = {
+    "long_state_name": (64_000, lambda size: chain(2).replace("S1", letters(size))),
+    "long_wrong_target": (64_000, lambda size: chain(2).replace("ok: S1", "ok: " + letters(size))),
+    "long_key": (
+        64_000,
+        lambda size: state(f", input_keys: [{letters(size)}]", "userdata: {a: 1}\n"),
+    ),
+    "long_field": (64_000, lambda size: state(f", {letters(size)}: 1")),
+    "long_type": (64_000, lambda size: state("").replace("ScriptedState", letters(size))),
+    "long_script_name": (64_000, lambda size: f"{HEAD}states:\n- A: {{script: {letters(size)}}}\n"),
+    "long_look_up": (64_000, lambda size: state(f", x: [[{letters(size)}]]", "params: {a: 1}\n")),
+    "long_key_type": (
+        64_000,
+        lambda size: state(f", input_keys: {{a: {letters(size)}}}", "userdata: {a: 1}\n"),
+    ),
+    "long_digits": (64_000, lambda size: state("", f"userdata: {{a: {'7' * size}}}\n")),
+    "long_underscores": (
+        64_000,
+        lambda size: state("").replace("ok: done", f"ok: {'a_' * (size // 2)}"),
+    ),
+    "long_property_event": (
+        64_000,
+        lambda size: state("", f"properties: [at_most: {{{letters(size)}: 3}}]\n"),
+    ),
+    "long_code": (
+        64_000,
+        lambda size: state(", callbacks: {ok: 'lambda ud: ud." + letters(size) + "'}").replace(
+            "ScriptedState", "ConditionalOutcomeState"
+        ),
+    ),
+    "wrong_targets": (10_000, lambda size: chain(size).replace("ok: S", "ok: T")),
+    "slips_of_targets": (10_000, lambda size: chain(size).replace("ok: S", "ok: SS")),
+    "wrong_outcomes": (
+        10_000,
+        lambda size: chain(size).replace("transitions: {ok:", "transitions: {kko:"),
+    ),
+    "wrong_types": (10_000, lambda size: chain(size).replace("ScriptedState", "SkriptedStat")),
+    "wrong_keys": (
+        10_000,
+        lambda size: chain(size, ", input_keys: [part_%(n)d]").replace(
+            "states:", "userdata: {prat: 1}\nstates:", 1
+        ),
+    ),
+    "wrong_remappings": (
+        10_000,
+        lambda size: chain(size, ", input_keys: [a], remapping: {b%(n)d: c%(n)d}"),
+    ),
+    "wrong_look_ups": (
+        10_000,
+        lambda size: chain(size, ", x: [[speed_%(n)d]]").replace(
+            "states:", "params: {sped: 1}\nstates:", 1
+        ),
+    ),
+    "wrong_code": (10_000, lambda size: chain(size, ", x: '`undefined_%(n)d(1)`'")),
+    "equal_names": (10_000, lambda size: chain(size).replace("- S", "- T").replace("T1", "T")),
+    "unknown_fields": (
+        30_000,
+        lambda size: (
+            HEAD + "states:\n- A: {template: SleepState, " + words("x%(n)d: 1", size) + "}\n"
+        ),
+    ),
+    "unknown_fields_of_machine": (
+        30_000,
+        lambda size: chain(2) + words("x%(n)d: 1", size).replace(", ", "\n") + "\n",
+    ),
+    "outcomes": (
+        20_000,
+        lambda size: (
+            f"{HEAD}states:\n- A: {{template: ScriptedState,"
+            f" outcomes: [{words('o%(n)d', size)}]}}\n"
+        ),
+    ),
+    "outcomes_with_transitions": (
+        20_000,
+        lambda size: (
+            f"{HEAD}states:\n- A: {{template: ScriptedState, outcomes: [{words('o%(n)d', size)}],"
+            f" transitions: {{{words('o%(n)d: done', size)}}}}}\n"
+        ),
+    ),
+    "machine_outcomes": (
+        20_000,
+        lambda size: chain(2).replace("[done]", f"[done, {words('o%(n)d', size)}]"),
+    ),
+    "transitions": (
+        20_000,
+        lambda size: state("").replace(
+            "{ok: done}", f"{{ok: done, {words('o%(n)d: done', size)}}}"
+        ),
+    ),
+    "equal_outcomes": (20_000, lambda size: state("").replace("[ok]", f"[{words('ok', size)}]")),
+    "duplicate_fields": (
+        20_000,
+        lambda size: (
+            HEAD + "states:\n- A: {template: SleepState, " + words("x: %(n)d", size) + "}\n"
+        ),
+    ),
+    "userdata": (20_000, lambda size: state("", f"userdata: {{{words('k%(n)d: 1', size)}}}\n")),
+    "unset_keys": (
+        20_000,
+        lambda size: state(f", input_keys: [{words('k%(n)d', size)}]", "userdata: {a: 1}\n"),
+    ),
+    "remapping": (
+        20_000,
+        lambda size: state(
+            f", input_keys: [{words('k%(n)d', size)}], remapping: {{{words('k%(n)d: a', size)}}}",
+            "userdata: {a: 1}\n",
+        ),
+    ),
+    "tags": (20_000, lambda size: state(f", tags: [{words('t%(n)d', size)}]")),
+    "claims": (20_000, lambda size: state(f", claims: [{words('t%(n)d', size)}]")),
+    "params": (20_000, lambda size: state("", f"params: {{{words('p%(n)d: 1', size)}}}\n")),
+    "params_of_params": (
+        20_000,
+        lambda size: state("", f"params: {{p: 1, {words('p%(n)d: [[p]]', size)}}}\n"),
+    ),
+    "properties": (
+        3_000,
+        lambda size: state("", f"properties: [{words('at_most: {A: %(n)d}', size)}]\n"),
+    ),
+    "properties_of_wrong_states": (
+        3_000,
+        lambda size: state("", f"properties: [{words('at_most: {B%(n)d: 1}', size)}]\n"),
+    ),
+    "claims_of_states": (10_000, lambda size: chain(size, ", claims: [arm.c%(n)d]")),
+    "types": (20_000, lambda size: state("", f"types: {{{words('T%(n)d: int', size)}}}\n")),
+    "types_of_types": (
+        5_000,
+        lambda size: state("", f"types: {{T: int, T0: T, {words('U%(n)d: list[T0]', size)}}}\n"),
+    ),
+    "nested_brackets": (
+        3_000,
+        lambda size: state("", f"userdata: {{a: {'[' * size}{']' * size}}}\n"),
+    ),
+    "long_text": (4_500_000, lambda size: state("", f"doc: {'a ' * (size // 2)}\n")),
+    "deep_expression": (400, lambda size: state(f", x: '`{'(' * size}1{')' * size}`'")),
+    "long_expression": (20_000, lambda size: state(f", x: '`[{words('%(n)d + 1', size)}]`'")),
+    "long_sum": (5_000, lambda size: state(f", x: '`{' + '.join(['1'] * size)}`'")),
+    "comments": (100_000, lambda size: chain(2) + "# a comment\n" * size),
+    "allowances": (20_000, lambda size: chain(2) + "# smachac: allow SM201 because\n" * size),
+    "allowances_of_wrong_codes": (
+        20_000,
+        lambda size: chain(2) + "# smachac: allow SM9999 because\n" * size,
+    ),
+    "aliases": (
+        10_000,
+        lambda size: state("", f"userdata: {{a: &a [1], b: [{words('*a', size)}]}}\n"),
+    ),
+    "anchors": (20_000, lambda size: state("", f"userdata: {{a: [{words('&a%(n)d 1', size)}]}}\n")),
+    "syntax_errors": (20_000, lambda size: HEAD + "states:\n" + "- A: {a: [1}\n" * size),
+    "tabs": (20_000, lambda size: HEAD + "states:\n" + "\t- A:\n" * size),
+    "unclosed_brackets": (20_000, lambda size: HEAD + "states:\n" + "- [\n" * size),
+    "unclosed_quotes": (20_000, lambda size: HEAD + "states:\n" + '- "a\n' * size),
+    "colons": (500_000, lambda size: HEAD + "states: " + "a: " * size + "\n"),
+    "wrong_indents": (
+        20_000,
+        lambda size: (
+            HEAD + "states:\n" + "".join(f" {' ' * (n % 5)}- A{n}:\n" for n in range(size))
+        ),
+    ),
+    "fields_without_colon": (
+        20_000,
+        lambda size: HEAD + "states:\n" + "- A\n    template SleepState\n" * size,
+    ),
+    "fields_outside_of_states": (
+        20_000,
+        lambda size: (
+            HEAD
+            + "states:\n"
+            + "".join(f"- A{n}:\n- template: SleepState\n- time: 1\n" for n in range(size))
+        ),
+    ),
+}
+"""The inputs of `check` that are one text: their first sizes, and the text of a size."""
+
+COMMANDS: Mapping[str, tuple[int, str, str]] = {
+    "fmt_nested_brackets": (3_000, "nested_brackets", "fmt main.yml"),
+    "fmt_long_line": (4_500_000, "long_text", "fmt main.yml"),
+    "fmt_comments": (100_000, "comments", "fmt main.yml"),
+    "fmt_unknown_fields": (20_000, "unknown_fields", "fmt main.yml"),
+    "fmt_outcomes": (20_000, "outcomes", "fmt main.yml"),
+    "fmt_shorthand": (20_000, "params_of_params", "fmt main.yml --shorthand"),
+    "build_outcomes": (
+        20_000,
+        "outcomes_with_transitions",
+        "build main.yml --target python -o out",
+    ),
+    "build_cpp_outcomes": (
+        20_000,
+        "outcomes_with_transitions",
+        "build main.yml --target cpp -o out",
+    ),
+    "rename_outcome_of_many": (
+        20_000,
+        "outcomes_with_transitions",
+        "rename main.yml A/o1 p1 --diff",
+    ),
+}
+"""Other commands over such texts: their first sizes, the name of the text, the arguments."""
+
+
+def text_of(title: str, size: int) -> str:
+    """The text of an input of SCRIPTS."""
+    return SCRIPTS[title][1](size)
+
+
+def run_over(title: str, arguments: str, folder: Path, size: int) -> list[str]:
+    """A command over the text of an input of SCRIPTS."""
+    check(folder, text_of(title, size))
+    return arguments.split()
+
+
+for title, (first, _) in SCRIPTS.items():
+    INPUTS[title] = (first, partial(run_over, title, "check main.yml"))
+for title, (first, script, arguments) in COMMANDS.items():
+    INPUTS[title] = (first, partial(run_over, script, arguments))
+
+
 # Names
 
 
 @hostile(64_000)
-def long_state_name(folder: Path, size: int) -> list[str]:
-    return check(folder, chain(2).replace("S1", "Ab_c" * (size // 4)))
-
-
-@hostile(64_000)
-def long_wrong_target(folder: Path, size: int) -> list[str]:
-    return check(folder, chain(2).replace("ok: S1", "ok: " + "Ab_c" * (size // 4)))
-
-
-@hostile(64_000)
 def long_wrong_outcome(folder: Path, size: int) -> list[str]:
-    name = "Ab_c" * (size // 4)
+    name = letters(size)
     return check(
         folder,
         f"{HEAD}states:\n- A: {{template: SleepState, time: 1, transitions: {{{name}: done}}}}\n",
@@ -93,80 +306,18 @@ def long_wrong_outcome(folder: Path, size: int) -> list[str]:
 
 
 @hostile(64_000)
-def long_key(folder: Path, size: int) -> list[str]:
-    return check(folder, state(f", input_keys: [{'Ab_c' * (size // 4)}]", "userdata: {a: 1}\n"))
-
-
-@hostile(64_000)
-def long_field(folder: Path, size: int) -> list[str]:
-    return check(folder, state(f", {'Ab_c' * (size // 4)}: 1"))
-
-
-@hostile(64_000)
-def long_type(folder: Path, size: int) -> list[str]:
-    return check(folder, state("").replace("ScriptedState", "Ab_c" * (size // 4)))
-
-
-@hostile(64_000)
-def long_script_name(folder: Path, size: int) -> list[str]:
-    return check(folder, f"{HEAD}states:\n- A: {{script: {'Ab_c' * (size // 4)}}}\n")
-
-
-@hostile(64_000)
-def long_look_up(folder: Path, size: int) -> list[str]:
-    return check(folder, state(f", x: [[{'Ab_c' * (size // 4)}]]", "params: {a: 1}\n"))
-
-
-@hostile(64_000)
-def long_key_type(folder: Path, size: int) -> list[str]:
-    return check(
-        folder, state(f", input_keys: {{a: {'Ab_c' * (size // 4)}}}", "userdata: {a: 1}\n")
-    )
-
-
-@hostile(64_000)
-def long_digits(folder: Path, size: int) -> list[str]:
-    return check(folder, state("", f"userdata: {{a: {'7' * size}}}\n"))
-
-
-@hostile(64_000)
-def long_underscores(folder: Path, size: int) -> list[str]:
-    return check(folder, state("").replace("ok: done", f"ok: {'a_' * (size // 2)}"))
-
-
-@hostile(64_000)
-def long_property_event(folder: Path, size: int) -> list[str]:
-    return check(folder, state("", f"properties: [at_most: {{{'Ab_c' * (size // 4)}: 3}}]\n"))
-
-
-@hostile(64_000)
 def long_frame(folder: Path, size: int) -> list[str]:
-    text = state("", f"robot: panda\nuserdata: {{frame_id: {'Ab_c' * (size // 4)}}}\n")
+    text = state("", f"robot: panda\nuserdata: {{frame_id: {letters(size)}}}\n")
     return check(folder, text)
-
-
-@hostile(64_000)
-def long_code(folder: Path, size: int) -> list[str]:
-    return check(
-        folder,
-        state(", callbacks: {ok: 'lambda ud: ud." + "Ab_c" * (size // 4) + "'}").replace(
-            "ScriptedState", "ConditionalOutcomeState"
-        ),
-    )
 
 
 @hostile(64_000)
 def long_command_word(folder: Path, size: int) -> list[str]:
     check(folder, chain(3))
-    return ["rename", "main.yml", "Ab_c" * (size // 4), "B"]
+    return ["rename", "main.yml", letters(size), "B"]
 
 
 # Wrong references
-
-
-@hostile(10_000)
-def wrong_targets(folder: Path, size: int) -> list[str]:
-    return check(folder, chain(size).replace("ok: S", "ok: T"))
 
 
 @hostile(10_000)
@@ -177,11 +328,6 @@ def wrong_targets_json(folder: Path, size: int) -> list[str]:
 @hostile(10_000)
 def wrong_targets_sarif(folder: Path, size: int) -> list[str]:
     return check(folder, chain(size).replace("ok: S", "ok: T"), "--format", "sarif")
-
-
-@hostile(10_000)
-def slips_of_targets(folder: Path, size: int) -> list[str]:
-    return check(folder, chain(size).replace("ok: S", "ok: SS"))
 
 
 @hostile(10_000)
@@ -207,16 +353,6 @@ def wrong_targets_of_a_state(folder: Path, size: int) -> list[str]:
 
 
 @hostile(10_000)
-def wrong_outcomes(folder: Path, size: int) -> list[str]:
-    return check(folder, chain(size).replace("transitions: {ok:", "transitions: {kko:"))
-
-
-@hostile(10_000)
-def wrong_types(folder: Path, size: int) -> list[str]:
-    return check(folder, chain(size).replace("ScriptedState", "SkriptedStat"))
-
-
-@hostile(10_000)
 def different_wrong_types(folder: Path, size: int) -> list[str]:
     text = [HEAD + "states:"]
     text += [f"- S{number}: {{template: Scrip{number}}}" for number in range(size)]
@@ -230,109 +366,13 @@ def wrong_scripts(folder: Path, size: int) -> list[str]:
     return check(folder, "\n".join(text) + "\n")
 
 
-@hostile(10_000)
-def wrong_keys(folder: Path, size: int) -> list[str]:
-    return check(
-        folder,
-        chain(size, ", input_keys: [part_%(n)d]").replace(
-            "states:", "userdata: {prat: 1}\nstates:", 1
-        ),
-    )
-
-
-@hostile(10_000)
-def wrong_remappings(folder: Path, size: int) -> list[str]:
-    return check(folder, chain(size, ", input_keys: [a], remapping: {b%(n)d: c%(n)d}"))
-
-
-@hostile(10_000)
-def wrong_look_ups(folder: Path, size: int) -> list[str]:
-    return check(
-        folder,
-        chain(size, ", x: [[speed_%(n)d]]").replace("states:", "params: {sped: 1}\nstates:", 1),
-    )
-
-
-@hostile(10_000)
-def wrong_code(folder: Path, size: int) -> list[str]:
-    return check(folder, chain(size, ", x: '`undefined_%(n)d(1)`'"))
-
-
-@hostile(10_000)
-def equal_names(folder: Path, size: int) -> list[str]:
-    return check(folder, chain(size).replace("- S", "- T").replace("T1", "T"))
-
-
 # Lists
-
-
-@hostile(30_000)
-def unknown_fields(folder: Path, size: int) -> list[str]:
-    return check(
-        folder, HEAD + "states:\n- A: {template: SleepState, " + words("x%(n)d: 1", size) + "}\n"
-    )
-
-
-@hostile(30_000)
-def unknown_fields_of_machine(folder: Path, size: int) -> list[str]:
-    return check(folder, chain(2) + words("x%(n)d: 1", size).replace(", ", "\n") + "\n")
-
-
-@hostile(20_000)
-def outcomes(folder: Path, size: int) -> list[str]:
-    return check(
-        folder,
-        f"{HEAD}states:\n- A: {{template: ScriptedState, outcomes: [{words('o%(n)d', size)}]}}\n",
-    )
-
-
-@hostile(20_000)
-def outcomes_with_transitions(folder: Path, size: int) -> list[str]:
-    return check(
-        folder,
-        f"{HEAD}states:\n- A: {{template: ScriptedState, outcomes: [{words('o%(n)d', size)}],"
-        f" transitions: {{{words('o%(n)d: done', size)}}}}}\n",
-    )
-
-
-@hostile(20_000)
-def machine_outcomes(folder: Path, size: int) -> list[str]:
-    return check(folder, chain(2).replace("[done]", f"[done, {words('o%(n)d', size)}]"))
-
-
-@hostile(20_000)
-def transitions(folder: Path, size: int) -> list[str]:
-    return check(
-        folder, state("").replace("{ok: done}", f"{{ok: done, {words('o%(n)d: done', size)}}}")
-    )
-
-
-@hostile(20_000)
-def equal_outcomes(folder: Path, size: int) -> list[str]:
-    return check(folder, state("").replace("[ok]", f"[{words('ok', size)}]"))
-
-
-@hostile(20_000)
-def duplicate_fields(folder: Path, size: int) -> list[str]:
-    return check(
-        folder, HEAD + "states:\n- A: {template: SleepState, " + words("x: %(n)d", size) + "}\n"
-    )
-
-
-@hostile(20_000)
-def userdata(folder: Path, size: int) -> list[str]:
-    return check(folder, state("", f"userdata: {{{words('k%(n)d: 1', size)}}}\n"))
 
 
 @hostile(20_000)
 def input_keys(folder: Path, size: int) -> list[str]:
     keys = words("k%(n)d", size)
     return check(folder, state(f", input_keys: [{keys}]", f"input_keys: [{keys}]\n"))
-
-
-@hostile(20_000)
-def unset_keys(folder: Path, size: int) -> list[str]:
-    return check(folder, state(f", input_keys: [{words('k%(n)d', size)}]", "userdata: {a: 1}\n"))
 
 
 @hostile(5_000)
@@ -349,37 +389,6 @@ def output_keys(folder: Path, size: int) -> list[str]:
     return check(folder, state(f", output_keys: [{keys}]", f"output_keys: [{keys}]\n"))
 
 
-@hostile(20_000)
-def remapping(folder: Path, size: int) -> list[str]:
-    return check(
-        folder,
-        state(
-            f", input_keys: [{words('k%(n)d', size)}], remapping: {{{words('k%(n)d: a', size)}}}",
-            "userdata: {a: 1}\n",
-        ),
-    )
-
-
-@hostile(20_000)
-def tags(folder: Path, size: int) -> list[str]:
-    return check(folder, state(f", tags: [{words('t%(n)d', size)}]"))
-
-
-@hostile(20_000)
-def claims(folder: Path, size: int) -> list[str]:
-    return check(folder, state(f", claims: [{words('t%(n)d', size)}]"))
-
-
-@hostile(20_000)
-def params(folder: Path, size: int) -> list[str]:
-    return check(folder, state("", f"params: {{{words('p%(n)d: 1', size)}}}\n"))
-
-
-@hostile(20_000)
-def params_of_params(folder: Path, size: int) -> list[str]:
-    return check(folder, state("", f"params: {{p: 1, {words('p%(n)d: [[p]]', size)}}}\n"))
-
-
 @hostile(5_000)
 def callbacks(folder: Path, size: int) -> list[str]:
     called = words("o%(n)d: lambda ud: ud.a < %(n)d", size)
@@ -390,39 +399,12 @@ def callbacks(folder: Path, size: int) -> list[str]:
     return check(folder, text.replace("ScriptedState", "ConditionalOutcomeState"))
 
 
-@hostile(3_000)
-def properties(folder: Path, size: int) -> list[str]:
-    return check(folder, state("", f"properties: [{words('at_most: {A: %(n)d}', size)}]\n"))
-
-
-@hostile(3_000)
-def properties_of_wrong_states(folder: Path, size: int) -> list[str]:
-    return check(folder, state("", f"properties: [{words('at_most: {B%(n)d: 1}', size)}]\n"))
-
-
 @hostile(10_000)
 def property_of_many_events(folder: Path, size: int) -> list[str]:
     events = words("S%(n)d", size)
     return check(
         folder,
         chain(size).replace("states:", f"properties: [after: {{S0: [{events}]}}]\nstates:", 1),
-    )
-
-
-@hostile(10_000)
-def claims_of_states(folder: Path, size: int) -> list[str]:
-    return check(folder, chain(size, ", claims: [arm.c%(n)d]"))
-
-
-@hostile(20_000)
-def types(folder: Path, size: int) -> list[str]:
-    return check(folder, state("", f"types: {{{words('T%(n)d: int', size)}}}\n"))
-
-
-@hostile(5_000)
-def types_of_types(folder: Path, size: int) -> list[str]:
-    return check(
-        folder, state("", f"types: {{T: int, T0: T, {words('U%(n)d: list[T0]', size)}}}\n")
     )
 
 
@@ -541,11 +523,6 @@ def nested_blocks(folder: Path, size: int) -> list[str]:
     return check(folder, state("", f"userdata:\n{nests}"))
 
 
-@hostile(3_000)
-def nested_brackets(folder: Path, size: int) -> list[str]:
-    return check(folder, state("", f"userdata: {{a: {'[' * size}{']' * size}}}\n"))
-
-
 @hostile(500)
 def nested_containers(folder: Path, size: int) -> list[str]:
     lines = [HEAD + "states:"]
@@ -561,116 +538,12 @@ def nested_containers(folder: Path, size: int) -> list[str]:
     return check(folder, "\n".join(lines) + "\n")
 
 
-@hostile(4_500_000)
-def long_text(folder: Path, size: int) -> list[str]:
-    return check(folder, state("", f"doc: {'a ' * (size // 2)}\n"))
-
-
-@hostile(400)
-def deep_expression(folder: Path, size: int) -> list[str]:
-    return check(folder, state(f", x: '`{'(' * size}1{')' * size}`'"))
-
-
-@hostile(20_000)
-def long_expression(folder: Path, size: int) -> list[str]:
-    return check(folder, state(f", x: '`[{words('%(n)d + 1', size)}]`'"))
-
-
-@hostile(5_000)
-def long_sum(folder: Path, size: int) -> list[str]:
-    return check(folder, state(f", x: '`{' + '.join(['1'] * size)}`'"))
-
-
-@hostile(100_000)
-def comments(folder: Path, size: int) -> list[str]:
-    return check(folder, chain(2) + "# a comment\n" * size)
-
-
-@hostile(20_000)
-def allowances(folder: Path, size: int) -> list[str]:
-    return check(folder, chain(2) + "# smachac: allow SM201 because\n" * size)
-
-
-@hostile(20_000)
-def allowances_of_wrong_codes(folder: Path, size: int) -> list[str]:
-    return check(folder, chain(2) + "# smachac: allow SM9999 because\n" * size)
-
-
-@hostile(10_000)
-def aliases(folder: Path, size: int) -> list[str]:
-    return check(folder, state("", f"userdata: {{a: &a [1], b: [{words('*a', size)}]}}\n"))
-
-
-@hostile(20_000)
-def anchors(folder: Path, size: int) -> list[str]:
-    return check(folder, state("", f"userdata: {{a: [{words('&a%(n)d 1', size)}]}}\n"))
-
-
-@hostile(20_000)
-def syntax_errors(folder: Path, size: int) -> list[str]:
-    return check(folder, HEAD + "states:\n" + "- A: {a: [1}\n" * size)
-
-
-@hostile(20_000)
-def tabs(folder: Path, size: int) -> list[str]:
-    return check(folder, HEAD + "states:\n" + "\t- A:\n" * size)
-
-
-@hostile(20_000)
-def unclosed_brackets(folder: Path, size: int) -> list[str]:
-    return check(folder, HEAD + "states:\n" + "- [\n" * size)
-
-
-@hostile(20_000)
-def unclosed_quotes(folder: Path, size: int) -> list[str]:
-    return check(folder, HEAD + "states:\n" + '- "a\n' * size)
-
-
-@hostile(500_000)
-def colons(folder: Path, size: int) -> list[str]:
-    return check(folder, HEAD + "states: " + "a: " * size + "\n")
-
-
-@hostile(20_000)
-def wrong_indents(folder: Path, size: int) -> list[str]:
-    return check(
-        folder, HEAD + "states:\n" + "".join(f" {' ' * (n % 5)}- A{n}:\n" for n in range(size))
-    )
-
-
-@hostile(20_000)
-def fields_without_colon(folder: Path, size: int) -> list[str]:
-    return check(folder, HEAD + "states:\n" + "- A\n    template SleepState\n" * size)
-
-
-@hostile(20_000)
-def fields_outside_of_states(folder: Path, size: int) -> list[str]:
-    return check(
-        folder,
-        HEAD
-        + "states:\n"
-        + "".join(f"- A{n}:\n- template: SleepState\n- time: 1\n" for n in range(size)),
-    )
-
-
 # fmt
 
 
 @hostile(3_000)
 def fmt_nested_blocks(folder: Path, size: int) -> list[str]:
     nested_blocks(folder, size)
-    return ["fmt", "main.yml"]
-
-
-@hostile(3_000)
-def fmt_nested_brackets(folder: Path, size: int) -> list[str]:
-    nested_brackets(folder, size)
-    return ["fmt", "main.yml"]
-
-
-@hostile(4_500_000)
-def fmt_long_line(folder: Path, size: int) -> list[str]:
-    long_text(folder, size)
     return ["fmt", "main.yml"]
 
 
@@ -687,12 +560,6 @@ def fmt_long_list(folder: Path, size: int) -> list[str]:
 
 
 @hostile(100_000)
-def fmt_comments(folder: Path, size: int) -> list[str]:
-    comments(folder, size)
-    return ["fmt", "main.yml"]
-
-
-@hostile(100_000)
 def fmt_empty_lines(folder: Path, size: int) -> list[str]:
     check(folder, chain(2) + " \n" * size + "forever: false\n")
     return ["fmt", "main.yml"]
@@ -704,37 +571,7 @@ def fmt_states(folder: Path, size: int) -> list[str]:
     return ["fmt", "main.yml"]
 
 
-@hostile(20_000)
-def fmt_unknown_fields(folder: Path, size: int) -> list[str]:
-    unknown_fields(folder, size)
-    return ["fmt", "main.yml"]
-
-
-@hostile(20_000)
-def fmt_outcomes(folder: Path, size: int) -> list[str]:
-    outcomes(folder, size)
-    return ["fmt", "main.yml"]
-
-
-@hostile(20_000)
-def fmt_shorthand(folder: Path, size: int) -> list[str]:
-    params_of_params(folder, size)
-    return ["fmt", "main.yml", "--shorthand"]
-
-
 # Other commands
-
-
-@hostile(20_000)
-def build_outcomes(folder: Path, size: int) -> list[str]:
-    outcomes_with_transitions(folder, size)
-    return ["build", "main.yml", "--target", "python", "-o", "out"]
-
-
-@hostile(20_000)
-def build_cpp_outcomes(folder: Path, size: int) -> list[str]:
-    outcomes_with_transitions(folder, size)
-    return ["build", "main.yml", "--target", "cpp", "-o", "out"]
 
 
 @hostile(5_000)
@@ -759,12 +596,6 @@ def build_ir(folder: Path, size: int) -> list[str]:
 def rename_state(folder: Path, size: int) -> list[str]:
     check(folder, chain(size))
     return ["rename", "main.yml", "S5", "T5", "--diff"]
-
-
-@hostile(20_000)
-def rename_outcome_of_many(folder: Path, size: int) -> list[str]:
-    outcomes_with_transitions(folder, size)
-    return ["rename", "main.yml", "A/o1", "p1", "--diff"]
 
 
 @hostile(5_000)
@@ -792,7 +623,7 @@ def diff_reordered(folder: Path, size: int) -> list[str]:
 
 @hostile(20_000)
 def diff_outcomes(folder: Path, size: int) -> list[str]:
-    outcomes_with_transitions(folder, size)
+    check(folder, text_of("outcomes_with_transitions", size))
     text = (folder / "main.yml").read_text()
     (folder / "new.yml").write_text(text.replace("o", "p").replace("ppdape", "x"))
     return ["diff", "main.yml", "new.yml"]
@@ -800,7 +631,7 @@ def diff_outcomes(folder: Path, size: int) -> list[str]:
 
 @hostile(20_000)
 def diff_userdata(folder: Path, size: int) -> list[str]:
-    userdata(folder, size)
+    check(folder, text_of("userdata", size))
     text = (folder / "main.yml").read_text()
     (folder / "new.yml").write_text(text.replace(": 1", ": 2"))
     return ["diff", "main.yml", "new.yml"]

@@ -83,7 +83,7 @@ def click_cost(browser: Browser, path: Path) -> str:
 
     def thread_time() -> float:
         found = devtools.send("Performance.getMetrics")["metrics"]
-        return next(float(each["value"]) for each in found if each["name"] == "ThreadTime")
+        return next(float(item["value"]) for item in found if item["name"] == "ThreadTime")
 
     before = thread_time()
     walls = page.evaluate(
@@ -121,4 +121,4 @@ def main(counts: list[int]) -> None:
 
 
 if __name__ == "__main__":
-    main([int(each) for each in sys.argv[1:]] or [100, 300, 1000, 2000])
+    main([int(argument) for argument in sys.argv[1:]] or [100, 300, 1000, 2000])

@@ -45,10 +45,10 @@ def scalars(tree: Tree) -> list[Scalar]:
         case Scalar():
             return [tree]
         case Seq(items=items):
-            return [each for item in items for each in scalars(item)]
+            return [scalar for item in items for scalar in scalars(item)]
         case Map(entries=entries):
             pairs = [part for entry in entries for part in (entry.key, entry.value)]
-            return [each for part in pairs for each in scalars(part)]
+            return [scalar for part in pairs for scalar in scalars(part)]
     return []
 
 
@@ -86,7 +86,7 @@ def main(number: int = 200, typed: int = 0) -> None:
         offset = word.start + typed
         offered = complete(text, offset, str(path), session.view(str(path)))
         begin = whole[word.start : offset]
-        words = [each.word for each in offered if each.word.startswith(begin)]
+        words = [item.word for item in offered if item.word.startswith(begin)]
         kind = f"{place.field or place.role}{'.' + place.role if place.field else ''}"
         total[kind] += 1
         first += words[:1] == [word.value]

@@ -34,8 +34,8 @@ def outcomes(names: list[str]) -> tuple[Outcome, ...]:
 def concurrence(number: int, branches: int, rules: int, target: str) -> Concurrence:
     """Branches of four outcomes, and rules over two to six of them, drawn by `number`."""
     source = random.Random(number)
-    names = [f"B{each}" for each in range(branches)]
-    results = [f"r{each}" for each in range(rules)] + ["rest"]
+    names = [f"B{item}" for item in range(branches)]
+    results = [f"r{item}" for item in range(rules)] + ["rest"]
 
     def when() -> tuple[Condition, ...]:
         asked = source.sample(names, source.randint(2, min(branches, 6)))
@@ -61,7 +61,7 @@ def concurrence(number: int, branches: int, rules: int, target: str) -> Concurre
 
 def row(count: int, branches: int, rules: int) -> Machine:
     """So many concurrences one after the other."""
-    targets = [*(f"C{each}" for each in range(1, count)), "done"]
+    targets = [*(f"C{number}" for number in range(1, count)), "done"]
     children = tuple(
         concurrence(each, branches, rules, target) for each, target in enumerate(targets)
     )

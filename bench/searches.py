@@ -76,13 +76,13 @@ def search_in_product(flow: Any, scope: Any, key: str, states: Any, *, stops: bo
                 every: tuple[KeyState, ...] = (after,)
                 if step.target in beside and after != "set":
                     every = ("set", after)
-                for each in every:
-                    target = Reached(step.target, each)
+                for item in every:
+                    target = Reached(step.target, item)
                     if not graph.has_edge(here, target):
                         graph.add_edge(here, target, outcome=step.outcome)
     if scope.path in flow.repeated:
-        exits = [each for each in graph if def_use.is_exit(each.vertex) and each.state == "set"]
-        graph.add_edges_from((each, Reached(START, "set")) for each in exits)
+        exits = [item for item in graph if def_use.is_exit(item.vertex) and item.state == "set"]
+        graph.add_edges_from((exit_, Reached(START, "set")) for exit_ in exits)
     found: dict[Any, Any] = {}
     for before, here in nx.bfs_edges(graph, origin):
         starts = here.vertex == START
@@ -118,8 +118,8 @@ def sources_graph(self: Any, container: Any, path: str, key: str, goal: str | No
             writers.append((here, edge.target))
         else:
             graph.add_edge(here, edge.target)
-    goals = [goal] if goal is not None else [each for each in graph if isinstance(each, tuple)]
-    seen = {*goals}.union(*(nx.ancestors(graph, each) for each in goals if each in graph))
+    goals = [goal] if goal is not None else [item for item in graph if isinstance(item, tuple)]
+    seen = {*goals}.union(*(nx.ancestors(graph, item) for item in goals if item in graph))
     return tuple(dict.fromkeys(here for here, target in writers if target in seen))
 
 
@@ -184,7 +184,7 @@ def main() -> None:
                 path.write_text(script(which, size, faults), "utf-8")
                 found = [measure(which, path) for _ in range(rounds)]
                 best = [min(column) for column in zip(*found, strict=True)]
-                times = "".join(f"{each:>10.2f}" for each in best)
+                times = "".join(f"{item:>10.2f}" for item in best)
                 print(f"{which:<26}{size:>8}{faults:>8}{times}")
     print(f"import of networkx: {min(cpu('import networkx') for _ in range(rounds)):.0f} ms")
 

@@ -152,7 +152,7 @@ def run(task: Task, place: Place, seed: int, record: str | None = None) -> Run:
 
 def report(name: str, runs: list[Run]) -> bool:
     """Print the figures of a task; true when every run was good."""
-    errors = [1000 * each for run in runs for each in run.errors]
+    errors = [1000 * error for run in runs for error in run.errors]
     good = sum(run.good for run in runs)
     print(
         f"{name:30} {good}/{len(runs)}   error max {max(errors):.2f} mm, mean "

@@ -72,8 +72,8 @@ def steps(text: str) -> Iterator[Step | File]:
                 for command in block.splitlines():
                     yield Step(section=section, command=command, shown=None)
             elif kind == "console":
-                for each in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:
-                    command, _, shown = each.partition("\n")
+                for item in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:
+                    command, _, shown = item.partition("\n")
                     yield Step(section=section, command=command, shown=shown)
             else:
                 yield File(name=block.split()[1], text=block)

@@ -31,7 +31,7 @@ def on_config(config: MkDocsConfig) -> None:
     for section in re.split(r"^## ", index, flags=re.MULTILINE)[1:]:
         title = section.split("\n", 1)[0]
         links = re.findall(r"^- \[[^]]*\]\(([^)]+)\)", section, re.MULTILINE)
-        config.nav.append({title: [_entry(_site_path("docs/README.md", each)) for each in links]})
+        config.nav.append({title: [_entry(_site_path("docs/README.md", item)) for item in links]})
 
 
 def on_files(files: Files, config: MkDocsConfig) -> None:
@@ -71,7 +71,9 @@ def _site_path(source: str, target: str) -> str:
         return name.removeprefix("docs/")
     if name in OUTSIDE or name in DATA:
         return name
-    folder = next(each for each in (ROOT / name / "_").parents if (each / "README.md").is_file())
+    folder = next(
+        parent for parent in (ROOT / name / "_").parents if (parent / "README.md").is_file()
+    )
     page = f"{folder.relative_to(ROOT).as_posix()}/README.md"
     section = (ROOT / name).relative_to(folder).as_posix() if (ROOT / name).is_file() else ""
     return f"{page}#{re.sub(r'[^a-z0-9_-]', '', section.lower())}".rstrip("#")

@@ -25,7 +25,7 @@ def render_manual() -> str:
 
 
 def _page(parser: argparse.ArgumentParser) -> Iterator[str]:
-    (commands,) = (each for each in parser._actions if isinstance(each, argparse._SubParsersAction))
+    (commands,) = (item for item in parser._actions if isinstance(item, argparse._SubParsersAction))
     yield f'.TH SMACHAC 1 "" "smachac {_escaped(__version__)}" "User Commands"'
     yield ".SH NAME"
     yield r"smachac \- compiler and checker for task state machines of robots"

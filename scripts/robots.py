@@ -43,7 +43,7 @@ def box(x: float, y: float, z: float, at: Numbers) -> Shape:
 
 
 def text(numbers: Numbers) -> str:
-    return " ".join(f"{each:.12g}" for each in numbers)
+    return " ".join(f"{number:.12g}" for number in numbers)
 
 
 def link(
@@ -93,7 +93,7 @@ def joint(
     yield f'    <parent link="{ends[0]}"/><child link="{ends[1]}"/>'
     yield f'    <origin xyz="{text(at)}" rpy="{text(turned)}"/>'
     if kind != "fixed":
-        lower, upper, effort, speed = (f"{each:.12g}" for each in limits)
+        lower, upper, effort, speed = (f"{limit:.12g}" for limit in limits)
         yield f'    <axis xyz="{text(axis)}"/>'
         yield f'    <limit lower="{lower}" upper="{upper}" effort="{effort}" velocity="{speed}"/>'
         yield '    <dynamics damping="0.7" friction="0"/>'

@@ -61,7 +61,7 @@ def main() -> None:
         for path in sorted(path for path in found if path.startswith(f"{package}/")):
             for fields, versions in sorted(found[path].items()):
                 mark = "" if len(versions) == 2 or path in SAME_IN_ROS_2 else f" {min(versions)}"
-                known = {key: value for each in versions.values() for key, value in each.items()}
+                known = {key: value for item in versions.values() for key, value in item.items()}
                 parts.append(f"== {path.partition('/')[2]}{mark}\n{written(known, fields)}")
         (ROOM / f"{package}.txt").write_text("".join(parts), encoding="utf-8")
 
@@ -70,8 +70,8 @@ def written(constants: dict[str, str], fields: Fields) -> str:
     """The text of a definition. A constant is known by its part: `0 uint8 LOW`."""
     parts = []
     for number, part in enumerate(fields):
-        own = [each for each in constants if each.startswith(f"{number} ")]
-        lines = [f"{each.partition(' ')[2]}={constants[each]}" for each in own]
+        own = [constant for constant in constants if constant.startswith(f"{number} ")]
+        lines = [f"{item.partition(' ')[2]}={constants[item]}" for item in own]
         parts.append("".join(f"{line}\n" for line in (*lines, *part)))
     return "---\n".join(parts)
 
@@ -106,13 +106,13 @@ def of_classes(folder: Path) -> Iterator[tuple[str, str]]:
     for file in sorted(folder.glob("*_msgs/*/_[A-Z]*.py")):
         path = f"{file.parent.parent.name}/{file.parent.name}/{file.stem[1:]}"
         held = [
-            each.value.value
-            for each in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
-            if isinstance(each, ast.Assign) and isinstance(each.value, ast.Constant)
-            and ast.unparse(each.targets[0]) == "_full_text"
+            node.value.value
+            for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant)
+            and ast.unparse(node.targets[0]) == "_full_text"
         ]  # fmt: skip
-        cut = [str(each).partition("=" * 80)[0] for each in held]
-        texts[path] = "---\n".join(each if each.endswith("\n") else f"{each}\n" for each in cut)
+        cut = [str(item).partition("=" * 80)[0] for item in held]
+        texts[path] = "---\n".join(item if item.endswith("\n") else f"{item}\n" for item in cut)
     for path, text in texts.items():
         whole = re.fullmatch(r"(.*)/msg/(\w+)Action", path)
         of_action = re.fullmatch(r"(.*?)(Action)?(Goal|Result|Feedback|Action)", path)

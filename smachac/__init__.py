@@ -195,7 +195,7 @@ def run(
     from smachac.driver import compile_script
     from smachac.frontend.files import module_folders
     from smachac.targets.python import TARGET
-    from smachac.targets.python.runner import execute
+    from smachac.targets.python.runner import PythonProgram, execute
 
     analysis = _analysis(source, name, scripts, templates)
     compiled = compile_script(analysis, TARGET)
@@ -210,7 +210,8 @@ def run(
             observe(event)
 
     folders = module_folders(Path(analysis.script))
-    result = execute(file, text, analysis.checked, note, folders=folders, seed=seed)
+    program = PythonProgram(name=file, text=text, machine=analysis.checked, folders=folders)
+    result = execute(program, note, seed=seed)
     return replace(result, events=tuple(events))
 
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, identity, in_order
 from smachac.diagnostics.source import Source, Word
-from smachac.driver import CODES, Analysis, MachineCheck, Previous, analyse, read_machine
+from smachac.driver import CODES, Analysis, IncrementalState, MachineCheck, analyse, read_machine
 from smachac.frontend.discovery import PYTHON_SUFFIX
 from smachac.frontend.errors.suppressions import unused_allowances
 from smachac.frontend.files import Disk, disk_library
@@ -103,7 +103,7 @@ class _Checker:
     scripts: Sequence[Path]
     templates: Sequence[Path]
     extra: MachineCheck | None
-    previous: dict[str, Previous] | None
+    previous: dict[str, IncrementalState] | None
 
     def script(self, path: Path) -> _Checked | None:
         """A script checked by all rules; None if it is a sub-script."""
@@ -155,7 +155,11 @@ class _Checker:
             disk=self.disk,
             codes=CODES,
         )
-        last = None if self.previous is None else self.previous.setdefault(str(path), Previous())
+        last = (
+            None
+            if self.previous is None
+            else self.previous.setdefault(str(path), IncrementalState())
+        )
         if called:
             found = analyse(source, library, report, self.extra, render=True, previous=last)
         else:
@@ -169,7 +173,7 @@ def check_scripts(
     scripts: Sequence[Path] = (),
     templates: Sequence[Path] = (),
     extra: MachineCheck | None = None,
-    previous: dict[str, Previous] | None = None,
+    previous: dict[str, IncrementalState] | None = None,
     *,
     everything: bool = False,
     cached: bool = False,
@@ -205,8 +209,8 @@ def check_scripts(
             alone.append(path)
             continue
         if processes > 1 and not analyses:  # the first script has loaded what all need
-            left = [each for each in paths if each not in (path, *alone)
-                    and (python is None or each.suffix != PYTHON_SUFFIX)]  # fmt: skip
+            left = [other for other in paths if other not in (path, *alone)
+                    and (python is None or other.suffix != PYTHON_SUFFIX)]  # fmt: skip
             from smachac.parallel import results_of
 
             results = results_of(checker.light, left, disk, processes)
@@ -260,7 +264,7 @@ def analyse_alone(
     source: Source,
     library: Library,
     report: Report,
-    previous: Previous | None = None,
+    previous: IncrementalState | None = None,
 ) -> Analysis:
     """The analysis of a sub-script that no script calls: a script is generated that calls it.
 
@@ -311,5 +315,5 @@ def _without(caller: Source, report: Report) -> Iterator[Diagnostic]:
         if item.span.source is caller or item.code in ("SM015", "SM019"):
             continue
         finding = item.finding
-        related = tuple(each for each in finding.related if each.span.source is not caller)
+        related = tuple(place for place in finding.related if place.span.source is not caller)
         yield replace(item, finding=replace(finding, related=related))

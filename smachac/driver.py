@@ -32,9 +32,9 @@ from smachac.frontend.errors import script as script_errors
 from smachac.frontend.files import disk_library, read_source
 from smachac.frontend.loader import Library
 from smachac.frontend.resolved_script import Script
-from smachac.frontend.script.kept import Kept
-from smachac.frontend.script.lower import KeptNodes, lower
+from smachac.frontend.script.lower import NodeCache, lower
 from smachac.frontend.script.resolve import refuse_python, resolve
+from smachac.frontend.script.resolve_cache import ResolveCache
 from smachac.frontend.text.suppressions import Suppression, suppress
 from smachac.ir.nodes import Checked, Machine, StateType
 from smachac.ir.recursion import deep_recursion
@@ -63,7 +63,7 @@ _PROBLEMS = (
 CODES: Mapping[str, Code] = {
     code.code: code
     for code in sorted(
-        [*(each.code for each in _PROBLEMS), *(each.code for each in checks.RULES)],
+        [*(problem.code for problem in _PROBLEMS), *(rule.code for rule in checks.RULES)],
         key=lambda code: code.code,
     )
 }
@@ -105,12 +105,12 @@ class Analysis:
 
 
 @dataclass(slots=True)
-class Previous:
+class IncrementalState:
     """The results of the last analysis of a script that the next one can use, after some texts have
     changed. Whoever checks a script again owns one: a language server, `check --watch`."""
 
-    kept: Kept = field(default_factory=Kept)
-    nodes: KeptNodes = field(default_factory=dict)
+    kept: ResolveCache = field(default_factory=ResolveCache)
+    nodes: NodeCache = field(default_factory=dict)
     context: Context | None = None
 
 
@@ -130,7 +130,7 @@ def analyse_script(
     source = script if isinstance(script, Source) else read_source(Path(script), report)
     if source is None:
         return Analysis(report=report)
-    folders = [[Path(folder) for folder in each] for each in (scripts, templates)]
+    folders = [[Path(folder) for folder in paths] for paths in (scripts, templates)]
     library = disk_library(
         Path(source.name), report, scripts=folders[0], templates=folders[1], codes=CODES
     )
@@ -144,7 +144,7 @@ def analyse(
     extra: MachineCheck | None = None,
     *,
     render: bool = False,
-    previous: Previous | None = None,
+    previous: IncrementalState | None = None,
 ) -> Analysis:
     """Parse, resolve, lower and check a script, then apply suppressions and severities.
 
@@ -165,7 +165,7 @@ def _analysis(
     library: Library,
     report: Report,
     extra: MachineCheck | None,
-    previous: Previous | None,
+    previous: IncrementalState | None,
     *,
     render: bool,
 ) -> Analysis:
@@ -203,7 +203,7 @@ def _analysis(
 
 
 def _context(
-    machine: Machine | None, library: Library, previous: Previous | None
+    machine: Machine | None, library: Library, previous: IncrementalState | None
 ) -> Context | None:
     """The context of a machine, with the facts of the previous one that still hold. It becomes the
     previous context."""
@@ -228,7 +228,7 @@ def _out_of_memory(source: Source) -> Diagnostic:
 
 
 def parse_and_resolve(
-    source: Source, library: Library, report: Report, kept: Kept | None = None
+    source: Source, library: Library, report: Report, kept: ResolveCache | None = None
 ) -> Script | None:
     """The script of a text, with its sub-scripts and look-ups filled in, as far as it can be
     read. `kept`: see `resolve`."""

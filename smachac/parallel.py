@@ -45,7 +45,7 @@ def results_of(
     try:
         while ends:
             ready = connection.wait(ends)
-            for end in [each for each in ends if each in ready]:
+            for end in [known for known in ends if known in ready]:
                 try:
                     path, result = end.recv()
                 except (EOFError, OSError):

@@ -134,7 +134,7 @@ def _data(item: Diagnostic) -> dict[str, Any]:
         "arguments": finding.arguments,
         "help": finding.help,
         "effect": finding.effect,
-        "related": [[_place(each.span), each.message] for each in finding.related],
+        "related": [[_place(place.span), place.message] for place in finding.related],
         "path": [[step.label, step.node, step.is_outcome] for step in finding.path],
         "node": finding.node,
         "group": finding.group,
@@ -165,7 +165,7 @@ def _known(record: Mapping[str, Any], read: Reader) -> Known:
         )
         steps = tuple(None if place is None else span(place) for place in data["steps"])
         severity = Severity(data["severity"])
-        kind = replace(CODES[data["code"]], firm=False)
+        kind = replace(CODES[data["code"]], unsuppressible=False)
         return Diagnostic(kind=kind, severity=severity, finding=finding, steps=steps)
 
     unknown = (UnknownPlace(span(place), str(reason)) for place, reason in record["unknown"])

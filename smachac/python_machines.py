@@ -253,7 +253,7 @@ def _of_python(item: Diagnostic) -> Diagnostic:
     """A finding as it is reported of a Python file. It has no repair: those of rules write YAML. It
     can be allowed and be in a baseline, as no program is generated."""
     finding = replace(item.finding, edits=(), repairs=())
-    return replace(item, kind=replace(item.kind, firm=False), finding=finding)
+    return replace(item, kind=replace(item.kind, unsuppressible=False), finding=finding)
 
 
 def _too_long(source: Source) -> Diagnostic:

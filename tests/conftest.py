@@ -129,7 +129,7 @@ def pytest_runtest_makereport(
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
     """Judge the skip of one test; ROS is asked for on its own."""
     report = yield
-    live = any(item.get_closest_marker(each) is not None for each in ("ros", "ros2"))
+    live = any(item.get_closest_marker(one) is not None for one in ("ros", "ros2"))
     _fail_if_skipped(report, "SMACHAC_REQUIRE_ROS" if live else "SMACHAC_REQUIRE_ALL")
     return report
 

@@ -6,16 +6,15 @@ The accesses of a leaf follow from its interface and from the functions and step
 from __future__ import annotations
 
 import ast
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from smachac.diagnostics.spelling import guesser
 from smachac.ir import nodes
-from smachac.ir.code_places import python_tree
 from smachac.ir.leaf import default_outcome, functions, key_names, variable_of
 from smachac.ir.nodes import Container, Expression, Leaf, Node, Struct, VariableRole
 from smachac.ir.outcome_names import PREEMPTED, fails
+from smachac.ir.script_code import Fields, fields_of, script_code
 from smachac.ir.traversal import remapping
 
 NONE: frozenset[str] = frozenset()
@@ -64,7 +63,7 @@ def leaf_reads(leaf: Leaf, *, raw: bool = False) -> tuple[str, ...]:
         read = needed if fields is None else [key for key in fields.read if key in needed]
         found |= {key: None for key in read if fields is None or key not in fields.tested}
     for name, code in order:
-        fields = userdata_fields(code.text)
+        fields = script_code(code.text).fields
         reads = needed if fields is None else fields.read
         optional = NONE if fields is None else fields.tested
         found |= {
@@ -85,7 +84,7 @@ def _fields_of_functions(leaf: Leaf) -> Iterator[Fields | None]:
         data = held.value.data
         if held.takes_userdata and isinstance(data, str | Expression):
             text = data if isinstance(data, str) else data.text
-            tree = python_tree(text.strip().strip("`"))
+            tree = script_code(text.strip().strip("`")).tree
             known: Fields | None = None
             if isinstance(tree, ast.Lambda):
                 names = [argument.arg for argument in (*tree.args.posonlyargs, *tree.args.args)]
@@ -209,87 +208,6 @@ def callback_names(leaf: Leaf) -> frozenset[str]:
     held = variable_of(leaf, "callbacks")
     data = held.value.data if held is not None else None
     return frozenset(key for key, _ in data.entries) if isinstance(data, Struct) else NONE
-
-
-class Fields(NamedTuple):
-    """The keys of userdata that code reads, in order, and those that it tests with `in`."""
-
-    read: tuple[str, ...]
-    tested: frozenset[str]
-
-
-USERDATA = ("ud", "userdata")
-"""The usual names of userdata."""
-
-_METHODS = frozenset(["keys", "update", "extract", "merge"])
-
-
-# Cached, because each text is read five times: a call costs 0.1 us instead of 14 us, 22 % of a
-# check of 1,000 states with a callback each.
-@lru_cache(maxsize=10_000)
-def userdata_fields(text: str) -> Fields | None:
-    """The keys that a lambda over userdata, or an expression over `ud`, reads; None if not known.
-
-    They are not known where the code passes userdata on, has another name for it than its argument,
-    does not accept it alone, or is the name of a function.
-    """
-    found = function_body(text)
-    return None if found is None else fields_of(*found)
-
-
-def function_body(text: str) -> tuple[ast.expr, frozenset[str]] | None:
-    """The value of a lambda over userdata, or of an expression over `ud`, and the names that the
-    userdata has in it; None if the code is neither, or cannot be called with userdata alone."""
-    body = python_tree(text.strip())
-    if isinstance(body, ast.Lambda):
-        names = frozenset(
-            argument.arg for argument in [*body.args.posonlyargs, *body.args.args][:1]
-        )
-        required = len(body.args.posonlyargs) + len(body.args.args) - len(body.args.defaults)
-        if required != 1 or _reads_another(body, names):
-            return None  # SM317, SM019
-        return body.body, names
-    names = frozenset(USERDATA)
-    if body is None:
-        return None
-    used = any(isinstance(node, ast.Name) and node.id in names for node in ast.walk(body))
-    return (body, names) if used else None
-
-
-def _reads_another(tree: ast.Lambda, names: frozenset[str]) -> bool:
-    """Whether a lambda reads userdata by a name that is not its argument."""
-    bound = names.union(node.arg for node in ast.walk(tree) if isinstance(node, ast.arg))
-    others = [name for name in USERDATA if name not in bound]
-    return any(isinstance(node, ast.Name) and node.id in others for node in ast.walk(tree.body))
-
-
-def fields_of(body: ast.expr, names: Collection[str]) -> Fields | None:
-    """The keys that code reads of userdata, which has these names; None if not known."""
-
-    def is_userdata(node: ast.expr) -> bool:
-        return isinstance(node, ast.Name) and node.id in names
-
-    read: dict[str, None] = {}
-    tested: set[str] = set()
-    uses = 0
-    for node in ast.walk(body):
-        match node:
-            case ast.Name(id=name) if name in names:
-                uses += 1
-            case ast.Attribute(value=value, attr=key) if is_userdata(value):
-                uses -= key not in _METHODS
-                read[key] = None
-            case ast.Subscript(value=value, slice=ast.Constant(str() as key)) if is_userdata(value):
-                uses -= 1
-                read[key] = None
-            case ast.Compare(
-                left=ast.Constant(str() as key),
-                ops=[ast.In() | ast.NotIn()],
-                comparators=[value],
-            ) if is_userdata(value):
-                uses -= 1
-                tested.add(key)
-    return None if uses else Fields(tuple(read), frozenset(tested))
 
 
 Keys = dict[str, Node]

@@ -7,12 +7,9 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping, Sequence
-from functools import lru_cache
 
-from smachac.analysis.accesses import USERDATA, fields_of
 from smachac.analysis.expression_types import RESULTS
 from smachac.ir import nodes
-from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import (
     Expression,
     FunctionResult,
@@ -23,6 +20,7 @@ from smachac.ir.nodes import (
     Value,
     VariableRole,
 )
+from smachac.ir.script_code import USERDATA, fields_of, free_names, script_code
 from smachac.records import dataclass
 
 
@@ -45,7 +43,7 @@ class CodeSlot:
 
     @property
     def tree(self) -> ast.expr | None:
-        return python_tree(self.code.text)
+        return script_code(self.code.text).tree
 
 
 def code_slots(node: Node, types: Mapping[str, StateType]) -> Iterator[CodeSlot]:
@@ -60,7 +58,7 @@ def code_slots(node: Node, types: Mapping[str, StateType]) -> Iterator[CodeSlot]
     elif isinstance(node, nodes.Iterator) and node.items is not None:
         data = node.items.data
         if isinstance(data, Expression):
-            tree = python_tree(data.text)
+            tree = script_code(data.text).tree
             alone = isinstance(tree, ast.Lambda) and accepts(tree, 0)  # as SMACH calls it
             yield CodeSlot(
                 name="it",
@@ -79,7 +77,9 @@ def _slots(value: Value, fact: nodes.VariableType) -> Iterator[CodeSlot]:
     for name, other in entries if mapping == isinstance(data, Struct) else ():
         quoted = isinstance(other, str) and fact.unquoted != "function"
         code = code_of(other, value)
-        if code is not None and not (quoted and not isinstance(python_tree(code.text), ast.Lambda)):
+        if code is None:
+            continue
+        if not quoted or isinstance(script_code(code.text).tree, ast.Lambda):
             yield CodeSlot(
                 name=name,
                 code=code,
@@ -99,52 +99,6 @@ def code_of(data: nodes.Data, value: Value) -> Expression | None:
             text = text[1:-1].strip()
         return Expression(text=text, span=value.span)
     return data if isinstance(data, Expression) else None
-
-
-def free_names(tree: ast.AST) -> list[ast.Name]:
-    """The names that code reads and does not bind itself, in the order of the text.
-
-    A name that `:=` binds is one of its function, everywhere in it.
-    """
-    found: list[tuple[ast.Name, tuple[set[str], ...]]] = []
-    todo: list[tuple[ast.AST, tuple[set[str], ...]]] = [(tree, (set(),))]
-    while todo:
-        node, scopes = todo.pop()
-        match node:
-            case ast.Name():
-                if isinstance(node.ctx, ast.Load):
-                    found.append((node, scopes))
-            case ast.Lambda(args=args, body=body):
-                own = {node.arg for node in ast.walk(args) if isinstance(node, ast.arg)}
-                defaults = [default for default in (*args.defaults, *args.kw_defaults) if default]
-                todo.extend((default, scopes) for default in defaults)
-                todo.append((body, (own, *scopes)))
-            case ast.ListComp() | ast.SetComp() | ast.DictComp() | ast.GeneratorExp():
-                inner = (scopes[0], _stored(node), *scopes[1:])
-                todo.extend((child, inner) for child in ast.iter_child_nodes(node))
-            case _:
-                if isinstance(node, ast.NamedExpr):
-                    scopes[0].add(node.target.id)
-                todo.extend((child, scopes) for child in ast.iter_child_nodes(node))
-    free = [name for name, scopes in found if not any(name.id in scope for scope in scopes)]
-    return sorted(free, key=lambda name: (name.lineno, name.col_offset))
-
-
-# Cached, because functions are repeated: a call costs 0.1 us instead of 15 us, 5 % of a check of
-# 1,000 states with a callback each.
-@lru_cache(maxsize=10_000)
-def free_in(text: str) -> tuple[ast.Name, ...]:
-    """The free names in the text of code; empty if it is not valid."""
-    tree = python_tree(text)
-    return tuple(free_names(tree)) if tree is not None else ()
-
-
-def _stored(node: ast.AST) -> set[str]:
-    return {
-        name.id
-        for name in ast.walk(node)
-        if isinstance(name, ast.Name) and isinstance(name.ctx, ast.Store)
-    }
 
 
 def userdata_outside(tree: ast.expr) -> ast.Name | None:
@@ -187,7 +141,7 @@ def accepts(tree: ast.Lambda, count: int) -> bool:
 
 def called_with_userdata(text: str) -> bool:
     """Whether code is a lambda that needs one argument."""
-    tree = python_tree(text)
+    tree = script_code(text).tree
     return isinstance(tree, ast.Lambda) and accepts(tree, 1) and not accepts(tree, 0)
 
 

@@ -12,11 +12,11 @@ from smachac.analysis.control_flow import Linear, absorbed, endless_states
 from smachac.analysis.definite_assignment import DataFlow, data_flow
 from smachac.analysis.error_recovery import absorbed_keys, absorbed_machine
 from smachac.analysis.expression_errors import Fault
-from smachac.analysis.expression_sites import ExpressionSite, expression_sites
+from smachac.analysis.expression_sites import ExpressionSite, faulty_sites
 from smachac.analysis.failure_paths import Failure, failures
 from smachac.analysis.filled_lists import filled_loops
+from smachac.analysis.incremental_facts import Fact, IncrementalResult, Preorder, found_at
 from smachac.analysis.item_reads import ItemRead, item_reads
-from smachac.analysis.kept_facts import Fact, Found, Preorder, found_at
 from smachac.analysis.loaded_bodies import LoadingOrder, bodies_loaded
 from smachac.analysis.lost_outputs import Lost, lost_outputs
 from smachac.analysis.possible_outcomes import Endings, Judged, endings, judged
@@ -69,7 +69,7 @@ class Context:
         self._known = previous._facts if previous is not None else {}
         self._facts: Facts = {}
         self._found_before = previous._found if previous is not None else {}
-        self._found: dict[Fact, Found] = {}
+        self._found: dict[Fact, IncrementalResult] = {}
         self._of_machine: dict[Callable[[Context], object], object] = {}
 
     def of_container(self, fact: Callable[[C], T], path: str, container: C) -> T:
@@ -230,8 +230,7 @@ class Context:
     @cached_property
     def expression_faults(self) -> list[tuple[ExpressionSite, Fault]]:
         """The type errors in the code of the script."""
-        sites = expression_sites(self._with_values.nodes, self.types, self.machine.state_types)
-        return [(site, fault) for site in sites for fault in site.faults()]
+        return [*faulty_sites(self._with_values.nodes, self.types, self.machine.state_types)]
 
     @cached_property
     def _filled_loops(self) -> frozenset[str]:

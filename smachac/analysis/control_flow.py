@@ -27,7 +27,7 @@ Linear: TypeAlias = "StateMachine | nodes.Sequence"
 """A container whose states are connected by transitions."""
 
 
-def is_open(node: Node) -> bool:
+def has_no_interface(node: Node) -> bool:
     return isinstance(node, Leaf) and node.open
 
 
@@ -40,7 +40,7 @@ def places_of(container: nodes.Container) -> Guesser:
     return guesser([*(child.name for child in container.children), *outcome_names(container)])
 
 
-def strays(
+def dangling_transitions(
     children: Iterable[Node], names: frozenset[str], exits: frozenset[str]
 ) -> list[Transition]:
     """The transitions of children that lead neither to one of `names` nor out by one of `exits`."""
@@ -56,7 +56,7 @@ def _is_stray(step: Transition, names: frozenset[str], exits: frozenset[str]) ->
 
 def unknown_outcomes(child: Node) -> list[Transition]:
     """The transitions for outcomes that a state does not have."""
-    if is_open(child):
+    if has_no_interface(child):
         return []
     declared = {outcome.name for outcome in child.outcomes}
     return [step for step in child.transitions if step.outcome not in declared]
@@ -67,7 +67,7 @@ def absorbed(container: Linear) -> Linear:
     followed by every other one, stands for each unknown target of a transition, and a state has the
     unknown outcomes of its transitions too."""
     names = children_names(container)
-    lost = strays(container.children, names, frozenset(outcome_names(container)))
+    lost = dangling_transitions(container.children, names, frozenset(outcome_names(container)))
     if not lost and not any(map(unknown_outcomes, container.children)):
         return container
     spans = {step.target: step.target_span for step in reversed(lost) if step.target not in names}
@@ -90,14 +90,14 @@ def outline(
     An open leaf can have any outcome, also one that its container has and no transition handles.
     `known` is the absorbed container, if it has been computed.
     """
-    if not endless and not any(map(is_open, container.children)):
+    if not endless and not any(map(has_no_interface, container.children)):
         return known if known is not None else absorbed(container)
     exits = outcome_names(container)
 
     def child(node: Node) -> Node:
         if endless and f"{path}/{node.name}" in endless:
             return replace(node, transitions=(), outcomes=())
-        if not is_open(node):
+        if not has_no_interface(node):
             return node
         handled = {step.outcome for step in node.transitions}
         unhandled = [name for name in exits[: len(handled) + 2] if name not in handled]

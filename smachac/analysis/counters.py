@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from typing import NamedTuple, TypeAlias
 
-from smachac.analysis.accesses import function_body
 from smachac.analysis.def_use import around
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.ir.leaf import functions, variable
 from smachac.ir.nodes import Key, Leaf, Node, is_number
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import inputs_from, outcome_names, outputs_to, remapping
 
 DEFAULT = "default"
@@ -106,7 +106,7 @@ def _added(known: _Constants, scope: UserdataScope, leaf: Leaf, key: str) -> Num
     """What a state adds to a key each time; 0 if that is not known."""
     source, target = _own_name(inputs_from(leaf, key)), _own_name(outputs_to(leaf, key))
     code = (functions(leaf, "callbacks") or {}).get(target or "")
-    body = function_body(code.text) if code is not None else None
+    body = script_code(code.text).function if code is not None else None
     if body is None:
         return 0
     tree, names = body
@@ -142,7 +142,7 @@ def _test(known: _Constants, scope: UserdataScope, leaf: Node, key: str) -> Test
     compared: list[tuple[str, Callable[[Number, Number], bool], Number, bool]] = []
     for outcome in outcome_names(leaf):
         if outcome in conditions:
-            body = function_body(conditions[outcome].text)
+            body = script_code(conditions[outcome].text).function
             match body:
                 case (ast.Compare(left=left, ops=[op], comparators=[right]), names):
                     turned = _field(right, names) == own

@@ -410,13 +410,13 @@ def _concurrence_steps(
 
 def _child_endings(child: Node, writes: Callable[[str, str], Writes | None]) -> ChildEndings:
     """The endings of one child of a concurrence. Those of a child with unknown outcomes are one."""
-    is_open = isinstance(child, Leaf) and child.open
+    has_no_interface = isinstance(child, Leaf) and child.open
     found = (
         (name, writes(child.name, name))
-        for name in outcome_names(child) or (ANY_OUTCOME,) * is_open
+        for name in outcome_names(child) or (ANY_OUTCOME,) * has_no_interface
     )
     endings = {name: written for name, written in found if written is not None}
-    return {ANY_OUTCOME: next(iter(endings.values()), ANYTHING)} if is_open else endings
+    return {ANY_OUTCOME: next(iter(endings.values()), ANYTHING)} if has_no_interface else endings
 
 
 def _either(several: Iterable[Writes]) -> Writes:

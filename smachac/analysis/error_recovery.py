@@ -9,8 +9,8 @@ from dataclasses import replace
 from operator import is_
 from typing import cast
 
-from smachac.analysis.accesses import scripted_steps, userdata_fields
-from smachac.analysis.control_flow import is_open
+from smachac.analysis.accesses import scripted_steps
+from smachac.analysis.control_flow import has_no_interface
 from smachac.diagnostics.source import NOWHERE
 from smachac.ir import nodes
 from smachac.ir.leaf import functions
@@ -25,6 +25,7 @@ from smachac.ir.nodes import (
     StateMachine,
     Value,
 )
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import outcome_names, outer_inputs, outer_outputs
 from smachac.ir.types import ANY, Type
 
@@ -32,7 +33,7 @@ from smachac.ir.types import ANY, Type
 def unknown_remaps(node: Node) -> list[Remap]:
     """The remaps of keys that a state does not have. Those of keys that only code of the script
     uses are reported as such (SM308, SM310)."""
-    if not node.remaps or is_open(node):
+    if not node.remaps or has_no_interface(node):
         return []
     own = {key.name for key in (*node.inputs, *node.outputs)}
     own.update(lacking_inputs(node))
@@ -44,7 +45,11 @@ def unknown_remaps(node: Node) -> list[Remap]:
 
 def is_around_open(node: Node) -> bool:
     """Whether a container was made for the sugar of a state whose keys are not known."""
-    return not isinstance(node, Leaf) and bool(node.sugar) and any(map(is_open, node.children))
+    return (
+        not isinstance(node, Leaf)
+        and bool(node.sugar)
+        and any(map(has_no_interface, node.children))
+    )
 
 
 def lacking_inputs(node: Node) -> tuple[str, ...]:
@@ -59,7 +64,7 @@ def lacking_inputs(node: Node) -> tuple[str, ...]:
     if isinstance(node, nodes.Iterator):
         set_.add(node.item_key)
     for child in node.children if wrong else ():
-        if is_open(child):
+        if has_no_interface(child):
             return ()
         read.update(outer_inputs(child))
         set_.update(outer_outputs(child))
@@ -89,7 +94,7 @@ def undeclared_reads(leaf: Leaf) -> Iterator[tuple[str, nodes.Expression]]:
         return
     inputs = {key.name for key in leaf.inputs}
     for _, code in called:
-        fields = userdata_fields(code.text)
+        fields = script_code(code.text).fields
         for key in fields.read if fields is not None else ():
             if key not in inputs:
                 inputs.add(key)

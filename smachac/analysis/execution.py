@@ -146,10 +146,10 @@ class Execution:
         self.first[number] = numbers.get(node.initial, -1)
         for child in self.children[number]:
             inner = self.nodes[child]
-            is_open = isinstance(inner, Leaf) and inner.open
+            has_no_interface = isinstance(inner, Leaf) and inner.open
             declared = frozenset(outcome_names(inner))
             for step in inner.transitions:
-                if not is_open and step.outcome not in declared:
+                if not has_no_interface and step.outcome not in declared:
                     continue
                 if leads_to_child(step, names):
                     self.targets[child][step.outcome] = (numbers[step.target], "")

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cache
+from typing import TypeAlias
 
 from smachac.analysis.code_slots import code_of
 from smachac.analysis.expression_errors import Fault, expression_faults, function_faults
-from smachac.analysis.expression_types import body_of, keys_read, parsed
+from smachac.analysis.expression_types import body_of, keys_read
 from smachac.analysis.fixed_lists import has_fixed_length, key_of, lacks_entry
 from smachac.analysis.item_errors import has_item_code, item_faults, item_keys
 from smachac.analysis.type_inference import Cell, Types
@@ -15,9 +17,13 @@ from smachac.ir import nodes
 from smachac.ir.expressions import Expr, Index
 from smachac.ir.leaf import functions
 from smachac.ir.nodes import Expression, Leaf, Node, StateType, Struct, VariableType
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import OuterNames, expressions, expressions_in, outcome_names, remapping
 from smachac.ir.types import ANY, Type
 from smachac.records import dataclass, field
+
+FunctionFaults: TypeAlias = "Callable[[str, Type], tuple[Fault, ...]]"
+"""The faults of the text of a function over userdata of a type."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,15 +40,13 @@ class ExpressionSite:
     state_types: Mapping[str, StateType] = field(default_factory=dict, repr=False)
     cells: dict[str, Cell] = field(default_factory=dict)
 
-    def faults(self) -> tuple[Fault, ...]:
+    def faults(self, of_function: FunctionFaults) -> tuple[Fault, ...]:
+        """The faults of the expression; those of a function come from `of_function`."""
         text = self.expression.text
         if self.types is not None:
-            userdata = mapping(self.types.items())
-            found = function_faults(text, userdata)
-            if has_item_code(text):
-                found += item_faults(text, userdata)
+            found = of_function(text, mapping(self.types.items()))
         else:
-            tree = parsed(text)
+            tree = script_code(text).portable
             found = () if tree is None else expression_faults(tree)
         return tuple(fault for fault in found if not fault.length or self.lengths_hold(fault))
 
@@ -56,7 +60,7 @@ class ExpressionSite:
     def is_initial(self, expr: Expr, entry: str) -> bool:
         """Whether an expression reads an item of an initial value with a fixed length, or the entry
         of an initial mapping, which no state adds."""
-        tree = parsed(self.expression.text)
+        tree = script_code(self.expression.text).portable
         if tree is None or not isinstance(expr, Index):
             return False
         key = key_of(expr.value, body_of(tree)[1])
@@ -68,6 +72,23 @@ class ExpressionSite:
 def _is_declared(cell: Cell) -> bool:
     flows = [alike[0] for alike in cell.flows.values() if not alike[0].judged]
     return cell.declared != ANY or all(flow.origin.how == "declared" for flow in flows)
+
+
+def faulty_sites(
+    states: Iterable[tuple[str, Node]], types: Types, state_types: Mapping[str, StateType]
+) -> Iterator[tuple[ExpressionSite, Fault]]:
+    """The type errors in the portable code of every state. A function that states share, over keys
+    of the same types, is judged once."""
+    of_function = cache(_faults_of_function)
+    for site in expression_sites(states, types, state_types):
+        for fault in site.faults(of_function):
+            yield site, fault
+
+
+def _faults_of_function(text: str, userdata: Type) -> tuple[Fault, ...]:
+    """The faults of a function over userdata, those in its code for items included."""
+    found = function_faults(text, userdata)
+    return found + item_faults(text, userdata) if has_item_code(text) else found
 
 
 def expression_sites(

@@ -5,9 +5,10 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping, Sequence
 
-from smachac.analysis.accesses import Accesses, fields_of, function_body, inside
+from smachac.analysis.accesses import Accesses, inside
 from smachac.ir import nodes
 from smachac.ir.nodes import Container, Leaf
+from smachac.ir.script_code import fields_of, script_code
 from smachac.ir.traversal import expressions, remapping
 
 Origin = tuple[str, str]
@@ -112,7 +113,7 @@ def _can_empty(leaf: Leaf, key: str, *, declared: bool) -> bool:
 
 def _only_reads(text: str, key: str) -> bool:
     """Whether code over userdata uses the list in a key only to read it."""
-    found = function_body(text)
+    found = script_code(text).function
     fields = fields_of(*found) if found is not None else None
     if found is None or fields is None:
         return False

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from smachac.analysis.accesses import userdata_fields
-from smachac.analysis.expression_types import body_of, parsed
+from smachac.analysis.expression_types import body_of
 from smachac.analysis.type_inference import Cell
 from smachac.ir import nodes
 from smachac.ir.expressions import Attribute, Call, Compare, Constant, Expr, Index, Name, parts
 from smachac.ir.nodes import Leaf, StateType, Struct
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import expressions
 
 READERS = frozenset(["bool", "len", "list", "max", "min", "sorted", "str", "sum", "tuple"])
@@ -77,12 +77,12 @@ def _leaves(leaf: Leaf, key: str) -> bool:
 
 def _only_reads(text: str, key: str) -> bool:
     """Whether code over userdata uses a key only to read items or facts of it."""
-    fields = userdata_fields(text)
+    fields = script_code(text).fields
     if fields is None:
         return False
     if key not in fields.read:
         return True
-    tree = parsed(text)
+    tree = script_code(text).portable
     if tree is None:
         return False
     body, parameters = body_of(tree)

@@ -10,13 +10,12 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import lru_cache
 
-from smachac.analysis.accesses import fields_of, function_body
 from smachac.analysis.expression_errors import Fault, expression_faults
-from smachac.analysis.expression_types import Names, parsed, type_of
+from smachac.analysis.expression_types import Names, type_of
 from smachac.analysis.type_lattice import inside, item_of
 from smachac.ir.expressions import Expr
+from smachac.ir.script_code import fields_of, script_code
 from smachac.ir.types import ANY, Type
 from smachac.records import dataclass
 
@@ -48,12 +47,10 @@ def has_item_code(text: str) -> bool:
     return " for " in text or text.count("lambda") > text.startswith("lambda")
 
 
-# Cached as those of portable expressions are (expression_errors.py).
-@lru_cache(maxsize=10_000)
 def item_faults(text: str, userdata: Type) -> tuple[Fault, ...]:
     """The faults in the code for items of a function over userdata, a record of the keys it
     reads."""
-    found = function_body(text)
+    found = script_code(text).function
     if found is None:
         return ()
     body, parameters = found
@@ -62,7 +59,7 @@ def item_faults(text: str, userdata: Type) -> tuple[Fault, ...]:
 
 def item_keys(text: str) -> tuple[str, ...]:
     """The keys of userdata that code reads, if it may run for each item of a list."""
-    found = function_body(text) if has_item_code(text) else None
+    found = script_code(text).function if has_item_code(text) else None
     fields = fields_of(*found) if found is not None else None
     return fields.read if fields is not None else ()
 
@@ -81,7 +78,11 @@ def _faults(body: ast.expr, names: Names, userdata: frozenset[str]) -> Iterator[
 def _portable(node: ast.AST) -> Expr | None:
     """A part of the code as a portable expression; None if it is other code."""
     other = any(isinstance(part, OTHER_CODE) for part in ast.walk(node))
-    return parsed(ast.unparse(node)) if isinstance(node, ast.expr) and not other else None
+    return (
+        script_code(ast.unparse(node)).portable
+        if isinstance(node, ast.expr) and not other
+        else None
+    )
 
 
 def _judged(place: _Place, tree: Expr, userdata: frozenset[str]) -> Iterator[Fault]:

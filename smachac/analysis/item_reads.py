@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_inference import Clash
-from smachac.analysis.type_lattice import is_open, item_of, misfit
+from smachac.analysis.type_lattice import is_unknown, item_of, misfit
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes
 from smachac.ir.nodes import Container, Leaf, Node
@@ -76,7 +76,7 @@ def _fits_item(clash: Clash) -> bool:
     if isinstance(value, tuple):
         return bool(value) and all(misfit(type_of_data(other), wanted) is None for other in value)
     item = item_of(clash.flow.type)
-    return not is_open(item) and misfit(item, wanted) is None
+    return not is_unknown(item) and misfit(item, wanted) is None
 
 
 def _reads(node: Container, name: str) -> bool:

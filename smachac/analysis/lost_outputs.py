@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator
 from itertools import chain
 from typing import NamedTuple
 
-from smachac.analysis.accesses import fields_of, function_body
 from smachac.analysis.def_use import around, place_in
 from smachac.analysis.definite_assignment import DataFlow, FactOf, UserdataScope
 from smachac.analysis.unset_reads import MOST_LEVELS, MOST_STEPS, Missing, Reader, reader_at
@@ -17,6 +16,7 @@ from smachac.ir import nodes
 from smachac.ir.graph import Vertex
 from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Concurrence, Key, Leaf, Node, Sequence, StateMachine
+from smachac.ir.script_code import fields_of, script_code
 from smachac.ir.script_paths import sugared_child
 from smachac.ir.traversal import outer_inputs, outer_outputs, remapping
 
@@ -182,7 +182,7 @@ def _counts_once(scope: UserdataScope, writer: Node, own: str) -> bool:
 def _counts(leaf: Leaf, key: str) -> bool:
     """Whether a callback of a leaf adds to the old value of a key or subtracts from it."""
     code = (functions(leaf, "callbacks") or {}).get(key)
-    found = function_body(code.text) if code is not None else None
+    found = script_code(code.text).function if code is not None else None
     if found is None or not isinstance(found[0], ast.BinOp):
         return False
     if not isinstance(found[0].op, ast.Add | ast.Sub):

@@ -6,14 +6,7 @@ import ast
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeAlias
 
-from smachac.analysis.code_slots import (
-    CodeSlot,
-    accepts,
-    free_names,
-    parameters,
-    results,
-    swapped,
-)
+from smachac.analysis.code_slots import CodeSlot, accepts, parameters, results, swapped
 from smachac.diagnostics.source import Span
 from smachac.ir.argument_parts import argument_uses, result_of
 from smachac.ir.code_places import node_place
@@ -28,6 +21,7 @@ from smachac.ir.message_types import (
     Message,
 )
 from smachac.ir.nodes import DEFINITION_KINDS, Leaf
+from smachac.ir.script_code import free_names
 from smachac.records import dataclass
 
 MOST_CODE = 10_000

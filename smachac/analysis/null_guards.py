@@ -7,10 +7,10 @@ import ast
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from smachac.analysis.accesses import function_body
 from smachac.ir.leaf import functions
 from smachac.ir.nodes import Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import inputs_from, outcome_names
 
 Keys = frozenset[str]
@@ -58,7 +58,7 @@ def guards(leaf: Leaf) -> Mapping[str, Keys]:
 
 def _facts_of(text: str) -> _Facts:
     """The facts of a condition: a function of the userdata, or code about `ud`."""
-    found = function_body(text)
+    found = script_code(text).function
     return _Facts() if found is None else _facts(*found)
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 
-from smachac.analysis.control_flow import is_open
+from smachac.analysis.control_flow import has_no_interface
 from smachac.ir.nodes import Concurrence, Node, OutcomeRule
 from smachac.ir.outcome_names import PREEMPTED, fails, good_first
 from smachac.ir.traversal import outcome_names
@@ -212,7 +212,7 @@ def sound_concurrence(path: str, node: Concurrence) -> SoundConcurrence | None:
     if not children or len(children) < len(node.children):
         return None
     ends = {
-        name: None if is_open(child) else frozenset(outcome_names(child))
+        name: None if has_no_interface(child) else frozenset(outcome_names(child))
         for name, child in children.items()
     }
     if not all(_is_sound(rule, ends) for rule in node.rules):
@@ -240,7 +240,7 @@ def space(concurrence: SoundConcurrence, known: OutcomesByPath) -> Space:
     found: Space = {}
     for child in concurrence.node.children:
         names = known[f"{concurrence.path}/{child.name}"]
-        if is_open(child):
+        if has_no_interface(child):
             names = tuple(
                 dict.fromkeys(
                     [*good_first(names, partial(fails, child)), *asked.get(child.name, ()), OTHER]
@@ -268,7 +268,7 @@ def unstopped_spaces(
         for name, outcomes in whole.items()
     }
     for child in concurrence.node.children:
-        if unstopped[f"{concurrence.path}/{child.name}"] or is_open(child):
+        if unstopped[f"{concurrence.path}/{child.name}"] or has_no_interface(child):
             yield {**others, child.name: own[child.name]}, child.name
 
 
@@ -287,7 +287,7 @@ def has_dead_rule(container: Concurrence) -> bool:
         condition.child
         and (
             (child := children.get(condition.child)) is None
-            or not (is_open(child) or condition.outcome in outcome_names(child))
+            or not (has_no_interface(child) or condition.outcome in outcome_names(child))
         )
         for rule in container.rules
         for condition in rule.when

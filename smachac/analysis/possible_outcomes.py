@@ -10,7 +10,7 @@ from smachac.analysis.control_flow import (
     Linear,
     absorbed,
     children_names,
-    is_open,
+    has_no_interface,
     unknown_outcomes,
 )
 from smachac.analysis.outcome_rules import (
@@ -118,7 +118,7 @@ def _linear(path: str, container: Linear, known: OutcomesByPath) -> set[str]:
         handled = {step.outcome for step in child.transitions}
         more: list[str] = []
         for step in child.transitions:
-            if step.outcome not in ends[child.name] and not is_open(child):
+            if step.outcome not in ends[child.name] and not has_no_interface(child):
                 continue
             if leads_to_child(step, names):
                 more.append(step.target)
@@ -126,7 +126,7 @@ def _linear(path: str, container: Linear, known: OutcomesByPath) -> set[str]:
                 found.add(step.target)
             else:
                 found |= exits
-        if is_open(child):
+        if has_no_interface(child):
             found |= exits - handled
         if is_unread(child) and len(seen) < len(states):
             more += states
@@ -140,7 +140,7 @@ def _by_edges(path: str, container: Container, known: OutcomesByPath, *, asked: 
     with the outcome of its child, also with a looping outcome (docs/semantics.md, Iterator)."""
     children = tuple(
         child
-        if is_open(child)
+        if has_no_interface(child)
         else replace(child, outcomes=_only(child, known[f"{path}/{child.name}"]))
         for child in container.children
     )

@@ -46,8 +46,6 @@ Answers = Mapping[str, Node]
 """The outcomes of a state after a request to stop was answered in it, each with the state that
 answered."""
 
-NO_ANSWERS: Answers = {}
-
 
 class StopStep(NamedTuple):
     """A transition after an answer: `child` of the container at `path` answered, or it ended
@@ -93,8 +91,8 @@ class StopPaths:
     def answers_of(self, path: str, node: Node) -> Answers:
         """The answers of the state at a path."""
         if not isinstance(node, Leaf):
-            return self.answers.get(path, NO_ANSWERS)
-        return {PREEMPTED: node} if PREEMPTED in outcome_names(node) else NO_ANSWERS
+            return self.answers.get(path, {})
+        return {PREEMPTED: node} if PREEMPTED in outcome_names(node) else {}
 
     def unstopped_outcomes(self, path: str, node: Node) -> frozenset[str]:
         """The outcomes with which the state at a path can end without a request to stop."""
@@ -146,7 +144,7 @@ def _linear(
         only: Collection[str] = answers
         if not isinstance(child, Leaf):
             here = f"{path}/{child.name}"
-            answers, only = found.answers.get(here, NO_ANSWERS), found.only.get(here, ())
+            answers, only = found.answers.get(here, {}), found.only.get(here, ())
         for step in child.transitions:
             beside = step.target in names and step.origin != "implicit"  # `leads_to_child`
             if step.outcome in answers:

@@ -26,7 +26,7 @@ from smachac.analysis.received_types import received_types
 from smachac.analysis.type_lattice import (
     NONE,
     Misfit,
-    is_open,
+    is_unknown,
     item_of,
     join,
     joined,
@@ -172,7 +172,7 @@ class _Inference:
 
     def declare(self, cell: Cell, type_: Type, span: Span) -> None:
         """Declare the type of a cell. A second declaration must fit the first."""
-        if is_open(type_):
+        if is_unknown(type_):
             return
         if cell.declared == ANY:
             cell.declared, cell.span = type_, span
@@ -191,7 +191,7 @@ class _Inference:
         self.arrive(TypeFlow(type=type_, how="value", span=span, cell=cell, value=data))
 
     def variable(self, held: Variable, path: str, node: Node | None) -> None:
-        if not is_open(held.type) and not _is_quoted_function(held):
+        if not is_unknown(held.type) and not _is_quoted_function(held):
             cell = self.cell(path, held.name, "variable", node, held.span)
             cell.declared = held.type
             self.literal(cell, held.value.data, held.value.span)
@@ -227,7 +227,7 @@ class _Inference:
             elif key.name in received:
                 type_ = received[key.name]
                 self.arrive(TypeFlow(type=type_, how="computed", span=cell.span, cell=cell))
-            elif is_open(key.type):
+            elif is_unknown(key.type):
                 self.arrive(TypeFlow(type=ANY, how="declared", span=cell.span, cell=cell))
         for held in leaf.variables:
             self.variable(held, path, leaf)

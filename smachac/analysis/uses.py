@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import Literal, NamedTuple
 
-from smachac.analysis.accesses import userdata_fields
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir import nodes
 from smachac.ir.nodes import Container, Expression, Key, Leaf, Node, Preset
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import remapping
 from smachac.records import dataclass, field
 
@@ -148,7 +148,7 @@ def items_read(container: Container) -> tuple[str, ...]:
     if container.items_key:
         return (container.items_key,)
     if container.items is not None and isinstance(container.items.data, Expression):
-        fields = userdata_fields(container.items.data.text)
+        fields = script_code(container.items.data.text).fields
         return tuple(key for key in fields.read if key not in fields.tested) if fields else ()
     return ()
 

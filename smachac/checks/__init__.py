@@ -24,7 +24,7 @@ from smachac.checks.userdata import (
     stale_keys,
     stores,
     undeclared_keys,
-    unset_outputs,
+    unwritten_outputs,
     userdata,
 )
 from smachac.diagnostics.diagnostic import Diagnostic, Finding, Report, diagnostic
@@ -67,7 +67,7 @@ MACHINE_RULES: tuple[Rule, ...] = (
     expressions.impossible_operation,
     expressions.constant_comparison,
     initial_values.overruled_value,
-    unset_outputs.unwritten_output,
+    unwritten_outputs.unwritten_output,
     class_code.never_returned,
     callables.not_a_function,
     callables.wrong_arguments,

@@ -22,7 +22,7 @@ class Rule:
 
 
 def rule(
-    code: str, name: str, severity: Severity, *, firm: bool = False, effect: str = ""
+    code: str, name: str, severity: Severity, *, unsuppressible: bool = False, effect: str = ""
 ) -> Callable[[RuleFunction], Rule]:
     """Make a rule of a function. Its docstring is the explanation of the code."""
 
@@ -32,7 +32,7 @@ def rule(
             name=name,
             severity=severity,
             explanation=function.__doc__ or "",
-            firm=firm,
+            unsuppressible=unsuppressible,
             effect=effect,
         )
         return Rule(code=entry, function=function)

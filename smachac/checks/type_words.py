@@ -9,7 +9,7 @@ from smachac.analysis.type_lattice import (
     fields,
     fits,
     inside,
-    is_open,
+    is_unknown,
     items,
     length_of,
     present,
@@ -44,7 +44,7 @@ def in_words(type_: Type) -> str:
             return " or ".join(f"`{text}`" for text in texts)
         case "none":
             return "nothing (`null`)"
-        case "tuple" if all(fits(item, FLOAT) and not is_open(item) for item in items(type_)):
+        case "tuple" if all(fits(item, FLOAT) and not is_unknown(item) for item in items(type_)):
             count = len(type_.args)
             return f"a list of {count} number{'s' if count != 1 else ''}"
     return f"`{widened(type_)}`"

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from smachac.diagnostics.baseline import Baseline
     from smachac.diagnostics.clusters import Cluster
     from smachac.diagnostics.diagnostic import Report
-    from smachac.driver import MachineCheck, Previous
+    from smachac.driver import IncrementalState, MachineCheck
     from smachac.frontend.files import Disk
     from smachac.pysource.coverage import Coverage
     from smachac.refactor.autofix import FixResult
@@ -144,29 +144,20 @@ def _codes_of(words: list[str]) -> list[str]:
 
 
 def _check_once(
-    arguments: Namespace, used: set[str], disk: Disk, previous: dict[str, Previous] | None = None
+    arguments: Namespace,
+    used: set[str],
+    disk: Disk,
+    previous: dict[str, IncrementalState] | None = None,
 ) -> int:
     """Check once; the exit code. The real paths of all files that were read go into `used`.
     `previous`: see `check_scripts`."""
-    from smachac.batch import check_scripts, processes_for
-    from smachac.checks.robot.workspace import unreachable
     from smachac.diagnostics.diagnostic import Severity
     from smachac.frontend.discovery import scripts_of
     from smachac.frontend.files import Disk
 
     started = time.perf_counter()
     paths = scripts_of(arguments.script, disk, python_finder(arguments))
-    sim_rule = unreachable if arguments.sim else None
-
-    def check(disk: Disk, previous: dict[str, Previous] | None = None) -> Batch:
-        folders = arguments.scripts, arguments.templates
-        cached = not (arguments.no_cache or arguments.watch or arguments.changed_since)
-        others = sim_rule is None and previous is None and not disk.texts
-        return check_scripts(
-            paths, disk, *folders, sim_rule, previous, everything=arguments.all, cached=cached,
-            processes=processes_for(len(paths)) if others else 1)  # fmt: skip
-
-    whole = check(disk, previous)
+    whole = _check_paths(arguments, paths, disk, previous)
     used.update(*whole.uses.values())
     changed = _changed(arguments.changed_since, used)
     found, notes = _select(whole, changed, arguments)
@@ -179,7 +170,7 @@ def _check_once(
         fixed = apply_fixes(
             whole,
             lambda batch: _select(batch, changed, arguments)[0].report,
-            lambda texts: check(Disk(texts, refused=disk.refused)),
+            lambda texts: _check_paths(arguments, paths, Disk(texts, refused=disk.refused)),
         )
         fixes = fixed.count
         if arguments.diff:
@@ -205,7 +196,7 @@ def _check_once(
     if not arguments.notes and len(without_notes(found.report)) < len(found.report):
         notes.append("--notes shows notes")
     if not arguments.diff:
-        clusters = _clusters(found, sim_rule, arguments)
+        clusters = _clusters(found, _simulation_rule(arguments), arguments)
         coverage = {
             name: analysis.coverage
             for name, analysis in whole.analyses.items()
@@ -213,6 +204,37 @@ def _check_once(
         }
         _put(found, failing, clusters, coverage, notes, arguments)
     return FINDINGS if any(failing.values()) or (arguments.diff and fixes) else OK
+
+
+def _check_paths(
+    arguments: Namespace,
+    paths: Sequence[Path],
+    disk: Disk,
+    previous: dict[str, IncrementalState] | None = None,
+) -> Batch:
+    """The check of some scripts with the options of the command."""
+    from smachac.batch import check_scripts, processes_for
+
+    rule = _simulation_rule(arguments)
+    alone = rule is not None or previous is not None or disk.texts
+    return check_scripts(
+        paths,
+        disk,
+        arguments.scripts,
+        arguments.templates,
+        rule,
+        previous,
+        everything=arguments.all,
+        cached=not (arguments.no_cache or arguments.watch or arguments.changed_since),
+        processes=1 if alone else processes_for(len(paths)),
+    )
+
+
+def _simulation_rule(arguments: Namespace) -> MachineCheck | None:
+    """The rule that runs the simulation, if the command has `--sim`."""
+    from smachac.checks.robot.workspace import unreachable
+
+    return unreachable if arguments.sim else None
 
 
 def _changed(revision: str | None, used: set[str]) -> set[str] | None:
@@ -398,7 +420,7 @@ def _watch(arguments: Namespace) -> int:
     from smachac.frontend.files import Disk, stamps
 
     disk = Disk(in_pieces=True)  # files that did not change are read and parsed once
-    previous: dict[str, Previous] = {}
+    previous: dict[str, IncrementalState] = {}
     known: set[str] = set()
     while True:
         before = stamps(_watched(arguments, known))

@@ -161,7 +161,7 @@ def _files(
     given = frozenset(name for tree in trees if tree is not None for name in _keys(tree))
     sources = [source for path in templates if (source := disk.read(path, [])) is not None]
     sets = {"sm_name": "Base.tpl.py"} | {
-        name: Path(source.name).name for source in sources for name in top_level_sets(source)
+        name: source.file_name for source in sources for name in top_level_sets(source)
     }
     for source in sources:
         path = Path(source.name)
@@ -285,11 +285,10 @@ def _difference(difference: SmachaDifference) -> MigrationItem:
 
 def _syntax_fault(source: Source) -> Diagnostic | None:
     """The error of a template that cannot be parsed."""
-    from pathlib import Path
 
     from smachac.targets.templates.engine import BlockError, Blocks
 
-    name = Path(source.name).name
+    name = source.file_name
     try:
         Blocks({name: source}.get).check_syntax(name)
     except BlockError as error:

@@ -462,7 +462,12 @@ def perform(
     from smachac.runtime.ros2_errors import ParameterError
     from smachac.sweep.play import FailedError
     from smachac.targets.python.output_check import output_check
-    from smachac.targets.python.runner import execute, failure_text
+    from smachac.targets.python.runner import (
+        PythonProgram,
+        Simulation,
+        execute,
+        failure_text,
+    )
 
     check = output_check(machine)
 
@@ -476,16 +481,15 @@ def perform(
     folders = [Path(os.path.realpath(folder)) for folder in module_folders(arguments.script)]
     try:
         outcome = execute(
-            name,
-            text,
-            machine,
+            PythonProgram(name=name, text=text, machine=machine, folders=folders),
             watched,
-            folders=folders,
             seed=arguments.seed,
-            gui=arguments.gui,
-            record=arguments.record,
-            faults=faults,
-            poses=arguments.poses,
+            simulation=Simulation(
+                gui=arguments.gui,
+                record=arguments.record,
+                faults=faults,
+                poses=arguments.poses,
+            ),
             arguments=arguments.node,
             gate=gate,
             on_preempt=_print_stop,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Callable
-from pathlib import PurePath
 from typing import TypeAlias
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, fingerprint
@@ -36,7 +35,7 @@ class BaselineError(Exception):
 
 
 def acceptable(report: Report) -> Report:
-    """The findings that a baseline may hold: all but firm errors."""
+    """The findings that a baseline may hold: all but unsuppressible errors."""
     return [item for item in report if not is_firm(item)]
 
 
@@ -88,7 +87,7 @@ def compare(report: Report, known: Baseline) -> tuple[Report, int, int]:
 
     Of several equal findings the first ones count as known. A finding may have another fingerprint
     than in a baseline of an older version: there, an entry that would no longer occur stands for a
-    finding with its code in its file. A firm error is always new.
+    finding with its code in its file. An unsuppressible error is always new.
     """
     left = Counter(known.entries)
     new = _without(report, left, _entry_of)
@@ -118,4 +117,4 @@ def _without(
 
 
 def _entry_of(item: Diagnostic) -> Entry:
-    return PurePath(item.span.source.name).name, item.code, fingerprint(item)
+    return item.span.source.file_name, item.code, fingerprint(item)

@@ -19,7 +19,7 @@ class Policy:
 def is_firm(item: Diagnostic) -> bool:
     """Whether a finding is an error that cannot be disabled: no program can be generated from such
     a machine."""
-    return item.kind.firm and item.severity is Severity.ERROR
+    return item.kind.unsuppressible and item.severity is Severity.ERROR
 
 
 def apply_severities(report: Report, policy: Policy) -> Report:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from functools import cached_property
 from operator import attrgetter
+from pathlib import PurePath
 from typing import Literal, NamedTuple, NoReturn
 
 from smachac.records import dataclass
@@ -20,6 +21,11 @@ class Source:
     name: str
     text: str
     language: Literal["yaml", "python"] = "yaml"
+
+    @cached_property
+    def file_name(self) -> str:
+        """The name without its folder."""
+        return PurePath(self.name).name
 
     @cached_property
     def line_starts(self) -> list[int]:

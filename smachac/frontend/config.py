@@ -130,7 +130,7 @@ def read_project(
     types: Aliases = {}
     cpp_types: Mapping[str, CppClass] = {}
     given = settings
-    settings = _with_meant_settings(settings)
+    settings = _with_recovered_settings(settings)
     _report_unknown(source, path, data, given, report)
     for key, value in settings.items():
         if key not in SETTINGS:
@@ -184,10 +184,10 @@ def _report_unknown(
             _wrong(source, key, message, _near(key, SETTINGS), report, ("setting", key))
 
 
-def _with_meant_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
+def _with_recovered_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     """The settings, with those of unknown names under the names that are meant, where that is
     certain: then one misspelt name is one finding."""
-    sure = guesser(SETTINGS).sure
+    sure = guesser(SETTINGS).unique_match
     meant = {key: sure(key) if key not in SETTINGS else key for key in settings}
     names = {key: name if name not in settings else key for key, name in meant.items()}
     return {names[key] or key: value for key, value in settings.items()}
@@ -359,7 +359,7 @@ def _severities(
             arguments = ("severity", code, word)
             help = "did you mean `off`?" if word in _WORDS_FOR_OFF else _near(word, LEVELS)
             _wrong(source, code, message, help, report, arguments, at_value=True)
-        elif codes and code in codes and codes[code].firm and word != "error":
+        elif codes and code in codes and codes[code].unsuppressible and word != "error":
             help = "remove the line: no program can be generated with this fault"
             _wrong(source, code, f"{code} is always an error", help, report, ("firm", code))
         else:

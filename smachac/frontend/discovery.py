@@ -1,4 +1,7 @@
-"""The scripts of a run: files, folders, patterns."""
+"""The search for scripts: from the arguments of a command (files, folders, patterns) to paths.
+
+A folder is searched for files whose text looks like a script; the project file can exclude some.
+"""
 
 from __future__ import annotations
 

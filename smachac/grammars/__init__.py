@@ -6,6 +6,7 @@ takes less time.
 
 from __future__ import annotations
 
+from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -13,15 +14,18 @@ if TYPE_CHECKING:
     from smachac.grammars.standalone.lalr import Lark
 
 
-def load(name: str, *, builder: Any = None) -> Lark:
-    """A new LALR parser for `<name>.lark`; callers keep it.
+@cache
+def parser_of(name: str, builder: type[Any] | None = None) -> Lark:
+    """The LALR parser of `<name>.lark`, made at its first use, as a module is imported once.
 
-    With a `builder` the parser makes no tree: it calls the methods of the builder, named like the
-    rules, with the results of the parts of each rule. Without one, trees have positions.
+    With a `builder` the parser makes no tree: it calls the methods of an object of this class,
+    named like the rules, with the results of the parts of each rule. Without one, trees have
+    positions.
     """
     from smachac.grammars.standalone.lalr import Lark
 
     tables = import_module(f"{__name__}.standalone.{name}")
-    options = {"transformer": builder, "propagate_positions": builder is None}
+    transformer = builder() if builder is not None else None
+    options = {"transformer": transformer, "propagate_positions": builder is None}
     parser: Lark = Lark._load_from_dict(tables.DATA, tables.MEMO, **options)  # type: ignore[no-untyped-call]
     return parser

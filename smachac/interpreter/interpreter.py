@@ -10,10 +10,8 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Collection, Generator, Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache
 from itertools import islice
 from operator import eq
-from pathlib import PurePath
 from typing import NoReturn, TypeAlias
 
 from smachac.diagnostics.source import NOWHERE, Span, assert_never
@@ -332,17 +330,11 @@ def _trace_sources(root: Node) -> dict[str, str]:
     """The place of each state as traces show it: file name without folder, and line. Empty for
     machines that no script describes."""
     return {
-        path: f"{_file_name(node.span.source.name)}:{node.span.line}"
+        path: f"{node.span.source.file_name}:{node.span.line}"
         if node.span.source is not NOWHERE.source
         else ""
         for path, node in walk(root)
     }
-
-
-# Cached, because PurePath costs 5 us and `smachac verify` creates an interpreter for each path.
-@lru_cache(maxsize=1000)
-def _file_name(name: str) -> str:
-    return PurePath(name).name
 
 
 def container_coroutine(

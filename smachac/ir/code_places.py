@@ -6,22 +6,10 @@ The text of an expression is the value of a YAML scalar: without quotes, escapes
 from __future__ import annotations
 
 import ast
-from functools import lru_cache
 
 from smachac.diagnostics.source import Span
 from smachac.ir.nodes import Expression
-from smachac.ir.python_code import parse_code
-
-
-# Cached, because several rules read each text: a call costs 0.1 us instead of 9 us, 7 % of a check
-# of 1,000 states with a callback each.
-@lru_cache(maxsize=10_000)
-def python_tree(text: str) -> ast.expr | None:
-    """The syntax tree of code as Python reads it; None if it is not valid. Nobody may change it."""
-    try:
-        return parse_code(text)
-    except SyntaxError:
-        return None
+from smachac.ir.script_code import script_code
 
 
 def place_in(code: Expression, start: int, end: int) -> Span:
@@ -49,7 +37,7 @@ def attribute_place(code: Expression, node: ast.Attribute) -> Span:
 def key_place(code: Expression, key: str) -> Span:
     """The first place where code reads a key of userdata, `ud.key` or `ud["key"]`; the whole code
     if there is none."""
-    tree = python_tree(code.text)
+    tree = script_code(code.text).tree
     for node in ast.walk(tree) if tree is not None else ():
         match node:
             case ast.Attribute(value=ast.Name(), attr=name) if name == key:

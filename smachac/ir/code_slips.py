@@ -9,8 +9,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from smachac.diagnostics.spelling import guesser_of
-from smachac.ir.code_places import python_tree
 from smachac.ir.python_code import TooDeepError, parse_code
+from smachac.ir.script_code import script_code
 
 
 class Slip(NamedTuple):
@@ -84,7 +84,7 @@ def corrected(text: str, found: list[Slip]) -> str | None:
         if slip.cure is None:
             return None
         text = text[: slip.start] + slip.cure + text[slip.end :]
-    return text if python_tree(text) is not None else None
+    return text if script_code(text).tree is not None else None
 
 
 def _spaced(tokens: list[_Token], at: int, word: str) -> str:
@@ -168,7 +168,7 @@ def _misspelt_lambdas(tokens: list[_Token]) -> Iterator[Slip]:
         has_argument = after.kind == "name" or (after.text == ":" and at == 0)
         if token.kind != "name" or token.text == "lambda" or not (starts and has_argument):
             continue
-        if guesser_of(("lambda",)).sure(token.text) is not None:
+        if guesser_of(("lambda",)).unique_match(token.text) is not None:
             what = f"Python has no `{token.text}`"
             yield Slip(token.start, token.end, what, "did you mean `lambda`?", "lambda")
 

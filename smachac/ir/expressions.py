@@ -11,15 +11,14 @@ import keyword
 import re
 import unicodedata
 from collections.abc import Iterable
-from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from smachac.diagnostics.source import assert_never
-from smachac.grammars import load
+from smachac.grammars import parser_of
 from smachac.records import dataclass
 
 if TYPE_CHECKING:
-    from smachac.grammars.standalone.lalr import Lark
+    pass
 
 
 LONGEST = 10_000
@@ -222,7 +221,7 @@ def parse_expression(text: str) -> Expr | None:
     from smachac.grammars.standalone.lalr import LarkError
 
     try:
-        expr: Any = _parser().parse(text)
+        expr: Any = parser_of("expression", _TreeBuilder).parse(text)
     except (LarkError, ValueError, SyntaxError):
         return None
     return expr if _depth_fits(expr) else None
@@ -253,11 +252,6 @@ def _depth_fits(expr: Expr) -> bool:
         if not level:
             return True
     return False
-
-
-@cache
-def _parser() -> Lark:
-    return load("expression", builder=_TreeBuilder())
 
 
 # --- tree builder of the parser

@@ -78,10 +78,14 @@ def edges(container: Container) -> Iterator[Edge]:
 def _live_transitions(child: Node) -> Sequence[Transition]:
     declared = {outcome.name for outcome in child.outcomes}
     live = [step for step in child.transitions if step.outcome in declared]
-    return child.transitions if len(live) < len(child.transitions) and _is_open(child) else live
+    return (
+        child.transitions
+        if len(live) < len(child.transitions) and _has_no_interface(child)
+        else live
+    )
 
 
-def _is_open(child: Node) -> bool:
+def _has_no_interface(child: Node) -> bool:
     return isinstance(child, Leaf) and child.open
 
 
@@ -92,8 +96,8 @@ def is_unread(child: Node) -> bool:
 
 def _targets_inside(child: Node, names: frozenset[str]) -> list[str]:
     """The states of its container, which have these names, to which a child can lead."""
-    is_open = isinstance(child, Leaf) and child.open
-    declared = None if is_open else {outcome.name for outcome in child.outcomes}
+    has_no_interface = isinstance(child, Leaf) and child.open
+    declared = None if has_no_interface else {outcome.name for outcome in child.outcomes}
     return [  # `leads_to_child` in place, as every check of a state comes here
         step.target
         for step in child.transitions
@@ -140,9 +144,9 @@ def _concurrence_edges(container: Concurrence) -> Iterator[Edge]:
         yield Edge(START, child.name, "", "enter")
         declared = outcome_names(child)
         for outcome, result in wanted.get(child.name, {}):
-            if result in exits and (_is_open(child) or outcome in declared):
+            if result in exits and (_has_no_interface(child) or outcome in declared):
                 yield Edge(child.name, exit_vertex(result), outcome, "rule")
-        outcomes = declared or (("",) if _is_open(child) else ())
+        outcomes = declared or (("",) if _has_no_interface(child) else ())
         for result in unconditional:
             if result in exits:
                 yield from (
@@ -184,7 +188,7 @@ def stopped_endings(container: nodes.Iterator) -> dict[str, str]:
 
 
 def _possible_outcomes(container: nodes.Iterator, child: Node) -> Iterable[str]:
-    if not _is_open(child):
+    if not _has_no_interface(child):
         return outcome_names(child)
     mapped = (first for first, _ in container.final_map)
     known = (*outcome_names(child), *container.loop_outcomes, *mapped, *outcome_names(container))
@@ -234,7 +238,9 @@ def can_end(container: Container) -> frozenset[str]:
     transition to nowhere, an outcome without a transition. Linear in the size of the container.
     """
     if not isinstance(container, (nodes.StateMachine, nodes.Sequence)):
-        ending = (child for child in container.children if child.outcomes or _is_open(child))
+        ending = (
+            child for child in container.children if child.outcomes or _has_no_interface(child)
+        )
         return frozenset(child.name for child in ending)
     names = frozenset([child.name for child in container.children])
     found: set[str] = set()
@@ -260,7 +266,7 @@ def _leads_on(child: Node, names: frozenset[str], ending: AbstractSet[str]) -> b
     for step in steps:
         if step.target in ending or not leads_to_child(step, names):
             return True
-    if _is_open(child):
+    if _has_no_interface(child):
         return not steps
     return not {step.outcome for step in steps}.issuperset(outcome_names(child))
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields
-from functools import cache
 from typing import TYPE_CHECKING, Any, get_args
 
 from smachac.diagnostics.source import Source, Span
-from smachac.grammars import load
+from smachac.grammars import parser_of
 from smachac.ir.nodes import (
     Condition,
     Data,
@@ -30,7 +29,7 @@ from smachac.ir.nodes import (
 from smachac.ir.types import ANY, Type, parse_type
 
 if TYPE_CHECKING:
-    from smachac.grammars.standalone.lalr import Lark, UnexpectedInput
+    from smachac.grammars.standalone.lalr import UnexpectedInput
 
 KINDS: Mapping[str, type[Node]] = {kind.keyword: kind for kind in get_args(Node)}
 """The classes of nodes by keyword."""
@@ -65,16 +64,11 @@ def parse_machine(text: str, name: str = "<ir>") -> Machine:
 
     source = Source(name, text)
     try:
-        return _MachineBuilder(source).machine(_parser().parse(text))
+        return _MachineBuilder(source).machine(parser_of("ir").parse(text))
     except UnexpectedInput as error:
         raise _unexpected(error, source) from None
     except RecursionError:
         raise IrSyntaxError("a value is nested too deeply", Span(source, 0, 0)) from None
-
-
-@cache
-def _parser() -> Lark:
-    return load("ir")
 
 
 MOST_SHOWN = 6
@@ -104,7 +98,7 @@ def _shown(terminal: str) -> str:
     """A terminal of the grammar as it is written."""
     if terminal == "$END":
         return "the end"
-    pattern = _parser().get_terminal(terminal).pattern
+    pattern = parser_of("ir").get_terminal(terminal).pattern
     return f"`{pattern.value}`" if pattern.type == "str" else f"a {terminal.lower()}"
 
 

@@ -10,7 +10,6 @@ import json
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import Field, fields
-from functools import lru_cache
 from typing import Any, Protocol, get_args
 
 from smachac.diagnostics.source import assert_never
@@ -257,8 +256,6 @@ def _names(names: Iterable[str]) -> str:
     return ", ".join(map(_name, names))
 
 
-# Cached, because a machine repeats few names: a call costs 0.1 us instead of 0.4 us.
-@lru_cache(maxsize=10_000)
 def _name(name: str) -> str:
     return name if _NAME.fullmatch(name) else _quote(name)
 

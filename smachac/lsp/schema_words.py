@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from pathlib import PurePath
 
 from smachac.diagnostics.source import Source
 from smachac.driver import CODES
@@ -168,7 +167,7 @@ SETTINGS_TABLE = ("tool", "smachac")
 def project_place(source: Source, offset: int) -> WordPlace | None:
     """The place of the word at an offset of a project file; None outside of its settings."""
     place = toml_place(source.text, offset)
-    if place is None or PurePath(source.name).name != "pyproject.toml":
+    if place is None or source.file_name != "pyproject.toml":
         return place
     if place.steps[:2] != SETTINGS_TABLE:
         return None

@@ -18,7 +18,7 @@ from smachac.batch import Batch, check_scripts
 from smachac.diagnostics.diagnostic import Diagnostic, Report, identity, in_order
 from smachac.diagnostics.repair import Repair
 from smachac.diagnostics.source import Source
-from smachac.driver import CODES, Analysis, Previous, read_machine
+from smachac.driver import CODES, Analysis, IncrementalState, read_machine
 from smachac.frontend.config import PROJECT_FILES
 from smachac.frontend.discovery import NothingFoundError, scripts_of
 from smachac.frontend.files import Disk, disk_library, find_project
@@ -77,7 +77,7 @@ class Session:
         self.open: dict[str, None] = {}
         self._uses: dict[str, frozenset[str]] = {}
         self._contexts: dict[str, tuple[Analysis, Context | None]] = {}
-        self._previous: dict[str, Previous] = {}
+        self._previous: dict[str, IncrementalState] = {}
         self._views: dict[str, View] = {}
         self._checked: dict[str, dict[str, Report]] = {}
         self._listed: dict[tuple[Path, ...], list[Path]] = {}

@@ -12,13 +12,13 @@ from typing import NamedTuple
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
+from smachac.pysource.instance_members import Objects
 from smachac.pysource.library_names import MODULES, is_shadowed, module_of_library
 from smachac.pysource.modules import Module, OwnClass, find_class, names_of, of_other_objects
-from smachac.pysource.own_objects import Objects
-from smachac.pysource.silent_results import called_function, is_silent
 from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 from smachac.pysource.userdata_parts import tried_code
+from smachac.pysource.void_calls import called_function, is_silent
 
 EXTRA_ARGUMENT = FaultKind(
     name="extra argument",

@@ -12,8 +12,8 @@ from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.class_facts import ClassFault
 from smachac.pysource.functions import caught
+from smachac.pysource.instance_members import NO_MEMBER, has_no_base, members_of, shows_all
 from smachac.pysource.modules import Module, OwnClass, file_of, find_class, names_of
-from smachac.pysource.own_objects import NO_MEMBER, has_no_base, members_of, shows_all
 from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 

@@ -283,7 +283,7 @@ class _Near:
         else:
             local = {name for part in walk_code(method) for name in _bound(part)} if method else ()
             known = {*self.module.names, *local} if bound else self.anywhere - BUILT_IN
-            near = guesser(sorted(known)).sure(node.id)
+            near = guesser(sorted(known)).unique_match(node.id)
         if near is None and not bound and not self.module.name:
             return None
         if near is None and bound:
@@ -347,7 +347,7 @@ class _Near:
         for node in self.every:
             for alias in node.names if isinstance(node, ast.Import) else ():
                 written = alias.asname or alias.name
-                if written not in used and guesser([name]).sure(written) is not None:
+                if written not in used and guesser([name]).unique_match(written) is not None:
                     start = text.offset(alias.lineno, alias.col_offset)
                     span = Span(text.source, start, start + len(alias.name))
                     return ClassFault(kind=WRONG_IMPORT, name=Word(alias.name, span), near=name)
@@ -453,12 +453,12 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
             if near is not None or calls:
                 found.append(ClassFault(kind=UNDEFINED_METHOD, name=word, near=near))
             elif isinstance(inner.ctx, ast.Load) and constructor and inner not in caught(node):
-                near = _meant_value(module, inner.attr)
+                near = _suggested_value(module, inner.attr)
                 found.append(ClassFault(kind=NEVER_SET, name=word, near=near))
     return found
 
 
-def _meant_value(module: Module, attribute: str) -> str:
+def _suggested_value(module: Module, attribute: str) -> str:
     """The value that another class of a module gives to an attribute of the same name, or the call
     of a class with that name; `...` without one."""
     given = {

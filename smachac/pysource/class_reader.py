@@ -45,6 +45,7 @@ from smachac.pysource.class_values import (
 from smachac.pysource.flow import Flow, Flows
 from smachac.pysource.functions import is_generator, is_plain
 from smachac.pysource.imports import missing_imports
+from smachac.pysource.instance_members import missing_members, uncalled_members
 from smachac.pysource.library_names import missing_attributes
 from smachac.pysource.local_values import local_values, text_of, unused_values
 from smachac.pysource.lost_outcomes import lost_outcomes
@@ -64,12 +65,11 @@ from smachac.pysource.modules import (
     with_bases,
 )
 from smachac.pysource.other_modules import module_with
-from smachac.pysource.own_objects import missing_members, uncalled_members
-from smachac.pysource.silent_results import silent_results
 from smachac.pysource.source import PythonText, name_span
 from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 from smachac.pysource.userdata_parts import parts_of_arguments, parts_read
+from smachac.pysource.void_calls import void_calls
 
 NO_STATE = FaultKind(
     name="no state",
@@ -382,7 +382,7 @@ def _undefined(
     yield from missing_constants(own, library)
     yield from module_slips(own, library)
     yield from texts_as_lists(own)
-    yield from silent_results(own, library)
+    yield from void_calls(own, library)
     yield from call_slips(own, library)
 
 

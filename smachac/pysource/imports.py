@@ -217,7 +217,7 @@ def _no_module(name: str, place: Word, library: UserCode) -> Iterator[ClassFault
         return
     exists = library.code(f"{found.near.replace('.', '/')}.py") is not None
     is_package = library.code(f"{name.partition('.')[0]}/__init__.py") is not None
-    if not exists or not (is_package or guesser([found.near]).sure(name)):
+    if not exists or not (is_package or guesser([found.near]).unique_match(name)):
         return
     near = found.near if "." in place.text else found.near.rpartition(".")[2]
     yield ClassFault(kind=NO_IMPORTED_MODULE, name=Word(name, place.span), near=near)

@@ -117,7 +117,7 @@ def missing_name(module: str, name: str) -> str | None:
     if name in OTHER_VERSIONS:
         return None
     guess = guesser(public)
-    near = guess.sure(name) if module in BY_SYSTEM else guess(name)
+    near = guess.unique_match(name) if module in BY_SYSTEM else guess(name)
     if near is None and module in BY_SYSTEM:
         return None
     return f"{module}.{near}" if near is not None else ""

@@ -13,6 +13,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir.class_facts import ClassFault, FaultKind
 from smachac.pysource.class_slips import operands
 from smachac.pysource.imports import makes_names
+from smachac.pysource.instance_members import NO_MEMBER
 from smachac.pysource.modules import (
     Module,
     OwnClass,
@@ -23,7 +24,6 @@ from smachac.pysource.modules import (
     module_name,
     source_module,
 )
-from smachac.pysource.own_objects import NO_MEMBER
 from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 

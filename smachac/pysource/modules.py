@@ -340,7 +340,7 @@ def absent_module(word: Word, library: UserCode) -> ClassFault | None:
         if any(text.startswith(f"{part}.") for text in here):  # an extension module
             return None
         guess = guesser(names)
-        near = guess(part) if at else guess.sure(part)
+        near = guess(part) if at else guess.unique_match(part)
         if near is None and (not at or not any(_is_package_file(text) for text in here)):
             return None
         meant = ".".join([*parts[:at], near, *parts[at + 1 :]]) if near is not None else None

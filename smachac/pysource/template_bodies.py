@@ -174,7 +174,7 @@ def _unknown_class(
         if (span := text.span(node.func)) and body.start(1) <= span.start < body.end(1)
         if node.func.id not in names and not text.is_filled(span)
     ]
-    return found[0] if len(found) == 1 and guess.sure(found[0].text) else None
+    return found[0] if len(found) == 1 and guess.unique_match(found[0].text) else None
 
 
 def _callee(name: str, leaf: Leaf) -> re.Pattern[str]:

@@ -35,6 +35,7 @@ from smachac.ir.outcome_names import PREEMPTED, good_first, is_failure
 from smachac.ir.script_paths import sugared_child
 from smachac.ir.traversal import leads_to_child, outcome_names, walk
 from smachac.ir.types import Type
+from smachac.records import dataclass, field
 from smachac.refactor.cst import Collection, Item
 from smachac.refactor.edited_script import EditedScript, HasErrorsError
 from smachac.refactor.editor import RefusedError, ScriptEditor, StateItem, flow_mapping, new_atom
@@ -239,23 +240,31 @@ def _kept(presets: Iterable[Preset], own: Span) -> Iterable[Preset]:
             yield preset
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NewState:
+    """A state to add: its name, its state type, and some of its transitions and variables."""
+
+    name: str
+    type: str
+    transitions: Mapping[str, str] = field(default_factory=dict)
+    variables: Mapping[str, object] = field(default_factory=dict)
+
+
 def add_state(
     script: EditedScript,
     container: str,
-    name: str,
-    type_name: str,
+    new: NewState,
     *,
     after: str | None = None,
     on: str | None = None,
-    transitions: Mapping[str, str] | None = None,
-    variables: Mapping[str, object] | None = None,
 ) -> Analysis:
-    """Add a state of a state type to a container, behind the state `after` or as the last one. With
+    """Add a state to a container, behind the state `after` or as the last one. With
     `on`, this outcome of `after` leads to the new state, whose best outcome leads on from there.
 
     Required variables without a value get a placeholder, and outcomes without a transition one that
     suits their names. The analysis afterwards.
     """
+    name = new.name
     machine = _machine(script)
     path, parent = find_state(machine, container)
     while not isinstance(parent, Leaf) and (inside := sugared_child(parent)) is not None:
@@ -272,13 +281,13 @@ def add_state(
         raise RefusedError(parent.span, message, "choose another name")
     if after is not None and after not in taken:
         raise _unknown(f"`{parent.name}` has no state `{after}`", after, list(taken))
-    type_ = find_state_type(type_name, script.library(), [])
+    type_ = find_state_type(new.type, script.library(), [])
     if type_ is None or type_.kind != "state":
-        raise NotFoundError(f"there is no state type `{type_name}` for states")
+        raise NotFoundError(f"there is no state type `{new.type}` for states")
     before = taken[after] if after is not None else parent.children[-1]
     editor = script.editor(before.span.source)
     place = editor.state(before.span)
-    given = dict(transitions or {})
+    given = dict(new.transitions)
     if on is not None:
         if not isinstance(parent, StateMachine) or on not in outcome_names(before):
             message = f"`{before.name}` has no outcome `{on}` that leads on"
@@ -288,7 +297,7 @@ def add_state(
             given.setdefault(good_first(_outcomes(type_))[0], goal)
         set_entry(editor, before.span, "transitions", on, name)
     led = _transitions(parent, name, type_, given)
-    item = _state_item(name, type_, variables or {}, led)
+    item = _state_item(name, type_, new.variables, led)
     if any(item.leading[:1] == [""] for item in place.states.items):
         item.leading = [""]
     lines = item_lines(item, place.states.column, first=False)
@@ -300,7 +309,7 @@ def add_state(
         nodes = dict(walk(whole.root))
         made = [nodes.get(f"{place}/{name}") for place in places]
         wanted = machine if on is None else _at(machine, befores, partial(_led, on, name))
-        return all(_is_made(state, type_name, led) for state in made) and same_machine(
+        return all(_is_made(state, new.type, led) for state in made) and same_machine(
             wanted, _at(whole, places, lambda node: _without_child(node, name))
         )
 

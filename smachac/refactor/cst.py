@@ -97,7 +97,7 @@ class Document:
 
 def parse_cst(source: Source) -> Document:
     """The syntax tree of a text. Raises UnsupportedYamlError, also for a text that is no YAML, but
-    that the checks read as repaired (frontend/text/yaml_mends.py)."""
+    that the checks read as repaired (frontend/text/yaml_recovery.py)."""
     if source.text.startswith("%"):
         raise UnsupportedYamlError("it begins with a YAML directive")
     from yaml import YAMLError

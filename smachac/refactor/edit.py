@@ -17,7 +17,7 @@ from smachac.driver import Analysis
 from smachac.ir.recursion import deep_recursion
 from smachac.records import dataclass
 from smachac.refactor.autofix import differences
-from smachac.refactor.change_states import add_state, remove_state, set_transition
+from smachac.refactor.change_states import NewState, add_state, remove_state, set_transition
 from smachac.refactor.edited_script import EditedScript
 from smachac.refactor.refactorings import contain_states, rename_name
 
@@ -129,12 +129,14 @@ def _perform(script: EditedScript, edit: Edit) -> Analysis:
             return add_state(
                 script,
                 edit.path,
-                given["name"],
-                given["type"],
+                NewState(
+                    name=given["name"],
+                    type=given["type"],
+                    transitions=given.get("transitions") or {},
+                    variables=given.get("variables") or {},
+                ),
                 after=given.get("after"),
                 on=given.get("on"),
-                transitions=given.get("transitions"),
-                variables=given.get("variables"),
             )
         case "rename":
             _check_plain(given["new"])

@@ -22,7 +22,7 @@ from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.diagnostics.spelling import slips, words_of
 from smachac.frontend import schema
 from smachac.frontend.text.fields import PRESET_FIELDS
-from smachac.frontend.text.yaml_mends import parse_mended
+from smachac.frontend.text.yaml_recovery import parse_with_recovery
 from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree, parse
 from smachac.ir.nodes import Machine
 from smachac.ir.outcome_names import OF_SMACH
@@ -106,7 +106,7 @@ def text_of(source: Source, machine: Machine | None, types: Iterable[str]) -> Te
         for slip in dict.fromkeys(slips(name)):
             by_slip.setdefault(slip, []).append(name)
     return Text(
-        source, parse_mended(source, []), counts, counts + Counter(given), (*names,), by_slip
+        source, parse_with_recovery(source, []), counts, counts + Counter(given), (*names,), by_slip
     )
 
 

@@ -25,7 +25,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import Analysis, MachineCheck, analyse
 from smachac.frontend.config import PROJECT_FILES
 from smachac.frontend.loader import Library
-from smachac.frontend.text.yaml_mends import parse_mended
+from smachac.frontend.text.yaml_recovery import parse_with_recovery
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
 from smachac.repair.operators import (
@@ -131,7 +131,7 @@ def _with_texts(library: Library, changed: Mapping[str, Source]) -> Library:
         template=lambda file: now(library.template(file)),
         own_template=lambda file: now(library.own_template(file)),
         release=lambda source: None,
-        parse=lambda source, report: (parse_mended if source in new else library.parse)(
+        parse=lambda source, report: (parse_with_recovery if source in new else library.parse)(
             source, report
         ),
     )

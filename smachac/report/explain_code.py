@@ -69,8 +69,8 @@ def render_code(code: Code) -> str:
     """The output of `smachac explain` for a code, without a line feed at the end."""
     parts = explanation(code)
     prose = [parts.summary, *parts.reason.split("\n\n")]
-    firm = ", firm" if code.firm else ""
-    lines = [f"{code.code} {code.name} ({code.severity.value}{firm})"]
+    mark = ", unsuppressible" if code.unsuppressible else ""
+    lines = [f"{code.code} {code.name} ({code.severity.value}{mark})"]
     lines += [fill(text, WIDTH, break_on_hyphens=False) for text in prose]
     for title, files in (("Wrong", parts.wrong), ("Right", parts.right)):
         for name, text in files.items():
@@ -89,10 +89,10 @@ _PREFACE = """# What smachac finds
 Generated from the docstrings of the rules: `make docs` writes this file, a test compares it.
 
 An error stops a build, a warning stops it under `--strict`, an info never stops it. Some findings
-have another severity than their code; then the text describes when. After an error of a *firm* code
-nothing can be generated, so no comment, setting or option silences it. Each example under "Wrong"
-gives exactly its code, and each example under "Right" gives nothing above an info; the tests run
-all of them. A line `# --- name` begins another file."""
+have another severity than their code; then the text describes when. After an error of an
+*unsuppressible* code nothing can be generated, so no comment, setting or option silences it. Each
+example under "Wrong" gives exactly its code, and each example under "Right" gives nothing above an
+info; the tests run all of them. A line `# --- name` begins another file."""
 
 
 def _groups(known: Mapping[str, Code]) -> Iterator[tuple[str, list[Code]]]:
@@ -126,8 +126,8 @@ def _sections(known: Mapping[str, Code]) -> Iterator[str]:
 def render_section(code: Code) -> str:
     """The explanation of a code as Markdown, without its heading."""
     parts = explanation(code)
-    firm = ", firm" if code.firm else ""
-    lines = [f"*{code.severity.value}{firm}*: {parts.summary}", parts.reason]
+    mark = ", unsuppressible" if code.unsuppressible else ""
+    lines = [f"*{code.severity.value}{mark}*: {parts.summary}", parts.reason]
     for title, files in (("Wrong:", parts.wrong), ("Right:", parts.right)):
         if files:
             lines += [title, _fenced(files)]

@@ -313,7 +313,7 @@ def project_schema(codes: Mapping[str, Code]) -> Schema:
             name: {
                 "description": f"{code.name}: {code.explanation.strip().partition(chr(10))[0]}",
                 "default": code.severity.value,
-                "enum": ["error"] if code.firm else list(LEVELS),
+                "enum": ["error"] if code.unsuppressible else list(LEVELS),
             }
             for name, code in codes.items()
         },

@@ -230,11 +230,11 @@ def shown(data: Any) -> str:
 def text(data: Any, place: Place) -> str:
     """A text that is not empty."""
     if not isinstance(data, str) or not data:
-        raise DataError(f"a text is expected, not {shown(data)}", place, _text_meant(data))
+        raise DataError(f"a text is expected, not {shown(data)}", place, _suggested_text(data))
     return data
 
 
-def _text_meant(data: Any) -> str:
+def _suggested_text(data: Any) -> str:
     """The help for a value that is not a text."""
     match data:
         case str(text), *_:
@@ -249,7 +249,7 @@ def _text_meant(data: Any) -> str:
 def number(data: Any, place: Place) -> float:
     """A finite number."""
     if not is_number(data):
-        raise DataError(f"a number is expected, not {shown(data)}", place, _number_meant(data))
+        raise DataError(f"a number is expected, not {shown(data)}", place, _suggested_number(data))
     return float(data)
 
 
@@ -263,7 +263,7 @@ _WITH_UNIT = re.compile(r"\s*([-+]?\d*\.?\d+)\s*(mm|cm|m|kg|g|deg|rad|N|°)\s*")
 _TO_SI = {"mm": 1e-3, "cm": 1e-2, "g": 1e-3, "deg": math.pi / 180, "°": math.pi / 180}
 
 
-def _number_meant(data: Any) -> str:
+def _suggested_number(data: Any) -> str:
     """The help for a value that is not a number: one in a list or in quotes, with its unit, or with
     a decimal comma."""
     if isinstance(data, list) and len(data) == 1 and is_number(data[0]):

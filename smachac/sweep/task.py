@@ -25,7 +25,7 @@ from smachac.runtime.tracing.writer import with_shown_paths
 from smachac.sweep.play import FailedError, play
 from smachac.sweep.variation import Single, Variation, edited, poses
 from smachac.targets.python import TARGET
-from smachac.targets.python.runner import execute, failure_text
+from smachac.targets.python.runner import PythonProgram, Simulation, execute, failure_text
 from smachac.verify.coverage import Coverage, CoverageItem
 from smachac.verify.trace_statistics import StateStatistics, TraceStatistics
 
@@ -151,14 +151,10 @@ class Runner:
         ((name, text),) = program.texts.items()
         try:
             return execute(
-                name,
-                text,
-                program.machine,
+                PythonProgram(name=name, text=text, machine=program.machine, folders=self._folders),
                 recorder,
-                folders=self._folders,
                 seed=seed,
-                faults=self._task.faults,
-                poses=placed,
+                simulation=Simulation(faults=self._task.faults, poses=placed),
             ).outcome
         finally:
             if (simulation := sys.modules.get("smachac.sim")) is not None:

@@ -162,6 +162,23 @@ DEPTH = (
 """The description of the option `depth` of pictures."""
 
 
+DIRECTION = "where the picture runs to: TB (down, the default), LR, BT or RL"
+"""The description of the option of pictures that names a direction."""
+
+DIRECTIONS = ("TB", "LR", "BT", "RL")
+
+
+def direction_of(options: Mapping[str, str], name: str) -> str:
+    """The direction of a picture, the value of the option `name`; `TB` without it.
+
+    Raises OptionError for another word.
+    """
+    direction = options.get(name, DIRECTIONS[0])
+    if direction not in DIRECTIONS:
+        raise OptionError(f"`{name}` must be one of {', '.join(DIRECTIONS)}, not `{direction}`")
+    return direction
+
+
 def target_names() -> list[str]:
     """The names of all installed targets."""
     from importlib.metadata import entry_points

@@ -55,14 +55,14 @@ def test_an_unknown_name_is_one_finding(right: str, wrong: str, code: str) -> No
     assert reported({"main.yml": TASK}) == []
     assert TASK.count(right) == 1
     found = reported({"main.yml": TASK.replace(right, wrong)})
-    assert [each[0] for each in found] == [code]
+    assert [item[0] for item in found] == [code]
 
 
 @pytest.mark.parametrize(("right", "wrong", "code"), SLIPS)
 def test_its_repair_restores_the_script(right: str, wrong: str, code: str) -> None:
     analysis = analysed({"main.yml": TASK.replace(right, wrong)})
     found = clusters(analysis, analysis.report, again(analysis))
-    edits = [(edit.span.text, edit.text) for each in found for edit in each.repair.edits]
+    edits = [(edit.span.text, edit.text) for item in found for edit in item.repair.edits]
     name = wrong.strip("{}").split(": ")
     meant = right.strip("{}").split(": ")
     ((old, new),) = [pair for pair in zip(name, meant, strict=True) if pair[0] != pair[1]]
@@ -72,13 +72,13 @@ def test_its_repair_restores_the_script(right: str, wrong: str, code: str) -> No
 @pytest.mark.parametrize(("right", "wrong", "code"), [SLIPS[0], SLIPS[3], SLIPS[6]])
 def test_a_fault_in_another_container_stays(right: str, wrong: str, code: str) -> None:
     text = TASK.replace(right, wrong).replace("blocked: stuck", "blocked: there")
-    assert [each[0] for each in reported({"main.yml": text})] == [code, "SM203"]
+    assert [item[0] for item in reported({"main.yml": text})] == [code, "SM203"]
 
 
 def test_an_unknown_target_can_be_every_state() -> None:
     """No state behind it is unreachable, no key unset, and no loop without an end."""
     text = TASK.replace("seen: GRASP, lost: failed", "seen: SOMEWHERE, lost: LOOK")
-    assert [each[0] for each in reported({"main.yml": text})] == ["SM101"]
+    assert [item[0] for item in reported({"main.yml": text})] == ["SM101"]
 
 
 @pytest.mark.parametrize("field", ["timeout: 5s", "retry: {on: [lost], max: 2}"])
@@ -89,4 +89,4 @@ def test_an_unknown_type_with_a_time_limit_or_tries_is_one_finding(field: str) -
         ends = "exhausted: failed, preempted: failed"
     text = TASK.replace("PrintUserdataState", f"Grsap\n      {field}")
     text = text.replace("{succeeded: MOVE}", f"{{succeeded: MOVE, {ends}}}")
-    assert [each[0] for each in reported({"main.yml": text})] == ["SM013"]
+    assert [item[0] for item in reported({"main.yml": text})] == ["SM013"]

@@ -144,18 +144,18 @@ def is_undecided(expr: Expr, types: dict[str, Type], values: dict[str, object]) 
 @settings(max_examples=examples(200))
 def test_what_fails_by_its_types_is_reported(expr: Expr, typed: Typed) -> None:
     types, values = typed
-    for each in inner(expr):
-        result = outcome(each, values)
+    for item in inner(expr):
+        result = outcome(item, values)
         if not isinstance(result, EvaluationError):
             continue
         if not isinstance(result.__cause__, TypeError | AttributeError):
             continue
-        if any(isinstance(outcome(part, values), EvaluationError) for part in parts(each)
-               if part != getattr(each, "function", None)):  # fmt: skip
+        if any(isinstance(outcome(part, values), EvaluationError) for part in parts(item)
+               if part != getattr(item, "function", None)):  # fmt: skip
             continue
-        if not is_undecided(each, types, values):
+        if not is_undecided(item, types, values):
             event("fails by its types")
-            assert [fault for fault in faults(each, types) if fault.expr == each]
+            assert [fault for fault in faults(item, types) if fault.expr == item]
 
 
 TYPES = {

@@ -24,8 +24,8 @@ MACHINES = st.one_of(valid_machines(), data_machines())
 
 def told(machine: Machine) -> dict[tuple[str, str], list[Failure]]:
     found: dict[tuple[str, str], list[Failure]] = {}
-    for each in Context(machine).failures:
-        found.setdefault((each.path, each.outcome), []).append(each)
+    for failure in Context(machine).failures:
+        found.setdefault((failure.path, failure.outcome), []).append(failure)
     return found
 
 

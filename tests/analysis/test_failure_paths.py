@@ -9,7 +9,7 @@ from tests.support.ir_machines import concurrence, iterator, leaf, machine
 
 
 def told(root: StateMachine) -> list[str]:
-    return [row(each) for each in Context(Machine(root=root)).failures]
+    return [row(failure) for failure in Context(Machine(root=root)).failures]
 
 
 def row(each: Failure) -> str:

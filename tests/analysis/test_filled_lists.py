@@ -38,7 +38,7 @@ def unset(state: str, pads: str = "[1, 2]", reader: str = "") -> list[str]:
         " code: {python: 'states:Own'}}",
         "states.py": STATES.replace("BODY", reader or "len(userdata.pads)"),
     }
-    return [each.span.text for each in analysed(files).report if each.code == "SM301"]
+    return [item.span.text for item in analysed(files).report if item.code == "SM301"]
 
 
 STATES = """

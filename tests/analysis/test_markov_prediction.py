@@ -102,7 +102,10 @@ def test_the_prediction_is_the_closed_form(machine: Machine) -> None:
 
 
 def test_gains_are_those_of_a_machine_without_the_failure(machine: Machine) -> None:
-    gains = {each.path: each.gain for each in exact(machine).sensitivities({"succeeded"})}
+    gains = {
+        sensitivity.path: sensitivity.gain
+        for sensitivity in exact(machine).sensitivities({"succeeded"})
+    }
     base = success(0.7, 0.72)
     assert gains["sm/GRASP/GRASP"] == pytest.approx(1 - base)
     assert gains["sm/BOTH/LEFT"] == pytest.approx(success(0.7, 0.9) - base)

@@ -43,7 +43,7 @@ def disagreements(seeds: Iterable[int], wanted: int, folder: Path) -> tuple[list
             continue
         batch.append((seed, machine, given, judgement.verdict != "fails"))
         if len(batch) == min(BATCH, wanted - judged):
-            verdicts = spin_verdicts([(each[1], each[2]) for each in batch], folder)
+            verdicts = spin_verdicts([(item[1], item[2]) for item in batch], folder)
             found += [b[0] for b, held in zip(batch, verdicts, strict=True) if b[3] != held]
             holding += sum(verdicts)
             judged += len(batch)

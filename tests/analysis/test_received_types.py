@@ -39,7 +39,7 @@ def codes(slot: str, code: str, more: str = "doc: x") -> list[str]:
         "cell_msgs/package.xml": "<package><name>cell_msgs</name></package>",
         "cell_msgs/action/Scan.action": ACTION,
     }
-    return [each.code for each in analysed(files).report if each.code in ("SM311", "SM312")]
+    return [item.code for item in analysed(files).report if item.code in ("SM311", "SM312")]
 
 
 def test_a_field_is_used_as_another_type() -> None:

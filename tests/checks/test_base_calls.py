@@ -52,7 +52,7 @@ def reported(call: str, base: str = BASE) -> list[tuple[str, str, str]]:
         "cell/base.py": base,
         "cell/states.py": CLASS.replace("CALL", call),
     }
-    return [(each.code, each.span.text, each.help or "") for each in analysed(files).report]
+    return [(item.code, item.span.text, item.help or "") for item in analysed(files).report]
 
 
 LISTS = '["moved", "lost"], ["offset"]'
@@ -95,7 +95,7 @@ def test_a_call_that_does_not_fit(call: str, place: str, help: str) -> None:
     ],
 )
 def test_no_finding(call: str) -> None:
-    assert [each for each in reported(call) if each[0] == "SM609"] == []
+    assert [item for item in reported(call) if item[0] == "SM609"] == []
 
 
 @pytest.mark.parametrize(
@@ -109,7 +109,7 @@ def test_no_finding(call: str) -> None:
 )  # fmt: skip
 def test_a_base_class_that_accepts_more(base: str) -> None:
     found = reported('super().__init__(node, ["moved", "lost"], ["offset"], 5, speed=1)', base)
-    assert [each for each in found if each[0] == "SM609"] == []
+    assert [item for item in found if item[0] == "SM609"] == []
 
 
 @pytest.mark.parametrize("copy", ["list(inputs)", "[*inputs]", "inputs or []", "inputs"])
@@ -117,7 +117,7 @@ def test_lists_in_another_order_than_those_of_a_base_class(copy: str) -> None:
     base = BASE.replace("node, outcomes, input_keys=()", "node, outcomes, inputs")
     base = base.replace("outcomes=outcomes, input_keys=list(input_keys)",
                         f"outcomes=list(outcomes), input_keys={copy}")  # fmt: skip
-    assert [each for each in reported(GOOD, base) if each[0] == "SM609"] == []
+    assert [item for item in reported(GOOD, base) if item[0] == "SM609"] == []
     call = 'super().__init__(node, ["offset"], ["moved", "lost"])'
     help = ORDER.replace("input_keys", "inputs")
     assert reported(call, base)[0] == ("SM609", '["moved", "lost"]', help)
@@ -142,7 +142,7 @@ def test_lists_that_pass_through_the_base_class() -> None:
     assert (one.code, one.span.text, one.span.line) == ("SM310", "offset", 9)
     assert one.help is not None
     assert one.help.startswith("write `height` in place of `offset`, also where `Move` declares it")
-    assert [each.span.text for each in one.related][:1] == ['"offset"']
+    assert [item.span.text for item in one.related][:1] == ['"offset"']
 
 
 @pytest.mark.parametrize(
@@ -155,5 +155,5 @@ def test_lists_that_pass_through_the_base_class() -> None:
     ],
 )  # fmt: skip
 def test_other_lists_through_the_base_class(call: str, base: str, place: str) -> None:
-    found = [each for each in reported(call, base) if each[0] == "SM603"]
-    assert [each[1] for each in found] == ([place] if place else [])
+    found = [item for item in reported(call, base) if item[0] == "SM603"]
+    assert [item[1] for item in found] == ([place] if place else [])

@@ -128,8 +128,8 @@ def order(text: str, *changes: tuple[str, str]) -> list[tuple[str, str, str | No
         assert text.count(old) == 1, old
         text = text.replace(old, new)
     report = analyse(Source("main.yml", text), memory_library({}, BUILT_IN), []).report
-    late = [each for each in report if each.code in ("SM505", "SM521")]
-    return [(each.message, each.span.text, each.help) for each in late]
+    late = [item for item in report if item.code in ("SM505", "SM521")]
+    return [(item.message, item.span.text, item.help) for item in late]
 
 
 def test_a_frame_of_a_body_that_is_loaded_later() -> None:

@@ -413,4 +413,4 @@ def test_operations_in_the_function_of_a_condition_state(code: str, part: str) -
 """
     script = HEAD.format(base="Base", inputs="n, word") + state
     found = analyse(Source("main.yml", script), memory_library({}, BUILT_IN), []).report
-    assert [each.span.text for each in found if each.code == "SM311"] == [part]
+    assert [item.span.text for item in found if item.code == "SM311"] == [part]

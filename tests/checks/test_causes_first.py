@@ -355,7 +355,7 @@ states:
 )
 def test_a_wrong_shape_is_one_finding(before: str, after: str, expected: list[str]) -> None:
     codes = found(FLAT.replace(before, after, 1))
-    assert [each.partition("\n")[0][: len(expected[0])] for each in codes] == expected
+    assert [code.partition("\n")[0][: len(expected[0])] for code in codes] == expected
 
 
 SEEN = """\
@@ -469,7 +469,7 @@ def test_a_misspelt_output_of_an_interface_is_one_finding() -> None:
         "templates/Find.yml": misspelt + 'code: {python: "sees:Find"}\n',
         "sees.py": SEEING,
     }
-    (item,) = [each for each in analysed(files).report if each.severity is Severity.ERROR]
+    (item,) = [one for one in analysed(files).report if one.severity is Severity.ERROR]
     assert item.code == "SM308"
     assert "write `grasp` in place of `gasp` in `Find.yml`" in str(item.help)
 
@@ -558,7 +558,7 @@ def test_branches_of_one_name_are_no_race() -> None:
     text = FIELDS.replace("- B: {template: S", "- A: {output_keys: [k], template: S")
     text = text.replace("- A: {template: S", "- A: {output_keys: [k], template: S")
     text = text.replace("default_outcome: bad", "default_outcome: bad\n      output_keys: [k]")
-    codes = [each.split()[0] for each in found(text, Find=FIND + "input_keys: {where: str}\n")]
+    codes = [item.split()[0] for item in found(text, Find=FIND + "input_keys: {where: str}\n")]
     assert "SM106" in codes
     assert "SM405" not in codes
 
@@ -607,11 +607,11 @@ states:
             callbacks: {heat: 'lambda ud: 3'}
 """
     report = analysed({"main.yml": script}).report
-    found = [(each.code, each.help) for each in report if each.severity is not Severity.INFO]
+    found = [(item.code, item.help) for item in report if item.severity is not Severity.INFO]
     help = "write `output_keys: [part, heat]` in `WARM`; nothing in `WARM` sets `part`"
     assert found == [("SM308", help)]
     both = script.replace("{heat:", "{part:")
-    assert "SM405" in [each.code for each in analysed({"main.yml": both}).report]
+    assert "SM405" in [item.code for item in analysed({"main.yml": both}).report]
 
 
 def test_the_name_of_a_param_as_a_text() -> None:

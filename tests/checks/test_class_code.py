@@ -383,7 +383,7 @@ def test_the_failure_that_is_meant() -> None:
 )  # fmt: skip
 def test_where_no_outcome_is_returned(end: str, line: str, words: str) -> None:
     report = findings(changed(('return "lost"', end)))
-    (item,) = [each for each in report if each.code == "SM309"]
+    (item,) = [one for one in report if one.code == "SM309"]
     first = item.related[0]
     found = (first.span.text, first.message) if words else ("", "")
     assert found == (line, words)
@@ -578,11 +578,11 @@ HELPER = (
 def test_a_helper_that_ends_without_return(tail: str, severity: Severity | None) -> None:
     files = {"templates/FindPart.yml": INTERFACE, "cell/find.py": HELPER.replace("TAIL", tail)}
     report = analyse(Source("main.yml", SCRIPT), memory_library(files, BUILT_IN), []).report
-    found = [each for each in report if each.code == "SM309"]
-    assert [each.severity for each in found] == ([severity] if severity is not None else [])
-    for each in found:
-        assert each.span.text == "judge"
-        assert str(each.help).startswith("end each path of `judge` with a `return`")
+    found = [item for item in report if item.code == "SM309"]
+    assert [item.severity for item in found] == ([severity] if severity is not None else [])
+    for item in found:
+        assert item.span.text == "judge"
+        assert str(item.help).startswith("end each path of `judge` with a `return`")
 
 
 FIELDS = """
@@ -708,7 +708,7 @@ def test_a_loop_over_a_generator(generator: str, found: list[str]) -> None:
     interface = INTERFACE.replace("lost: {}, ", "")
     script = SCRIPT.replace(" lost: lost,", "")
     report = findings(text + generator, interface, script)
-    assert [each for each in lines(report) if each.startswith("SM309")] == found
+    assert [line for line in lines(report) if line.startswith("SM309")] == found
 
 
 @pytest.mark.parametrize(
@@ -726,7 +726,7 @@ def test_a_method_of_an_object_of_the_library(use: str, found: list[str]) -> Non
     )
     kept = "self.speed = speed\n        self.done = threading.Event()"
     text = text.replace("self.speed = speed", kept)
-    assert [each for each in lines(findings(text)) if each.startswith("SM609")] == found
+    assert [line for line in lines(findings(text)) if line.startswith("SM609")] == found
 
 
 @pytest.mark.parametrize(

@@ -75,7 +75,7 @@ def report(*changes: tuple[str, str], files: dict[str, str] | None = None) -> li
     for old, new in changes:
         assert any(old in text for text in found.values())
         found = {name: text.replace(old, new, 1) for name, text in found.items()}
-    return [each for each in analysed(found).report if each.code not in ("SM305", "SM306")]
+    return [item for item in analysed(found).report if item.code not in ("SM305", "SM306")]
 
 
 def only(*changes: tuple[str, str], files: dict[str, str] | None = None) -> Diagnostic:
@@ -211,7 +211,7 @@ def test_an_input_key_in_place_of_the_output_key() -> None:
 )
 def test_a_wrong_constant_is_marked_where_its_text_is(text: str, help: str) -> None:
     (item,) = [
-        each for each in report(('FOUND = "found"', f'FOUND = "{text}"')) if each.code == "SM309"
+        one for one in report(('FOUND = "found"', f'FOUND = "{text}"')) if one.code == "SM309"
     ]
     assert (item.code, item.span.text, item.help) == ("SM309", f'"{text}"', help)
     assert item.related[0].span.text == "FOUND"
@@ -309,4 +309,4 @@ from cell.camera import Camera
 def test_imports_of_the_own_base(old: str, new: str, found: list[str]) -> None:
     files = {"templates/Own.tpl.py": OWN_BASE.replace(old, new, 1)}
     items = report(("template: Base\n", "template: Own\n"), files=files)
-    assert [(item.code, item.span.text) for item in items] == [("SM608", each) for each in found]
+    assert [(item.code, item.span.text) for item in items] == [("SM608", one) for one in found]

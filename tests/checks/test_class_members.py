@@ -63,7 +63,7 @@ def reported(value: str, modes: str = ENUM) -> list[tuple[str, str, str]]:
         "cell/modes.py": modes,
     }
     report = analysed(files).report
-    return [(each.code, each.span.text, each.help or "") for each in report]
+    return [(item.code, item.span.text, item.help or "") for item in report]
 
 
 MEMBERS = "its members are `FAST`, `SLOW`"

@@ -346,7 +346,7 @@ def test_python_that_is_no_slip(body: str) -> None:
 
 def test_a_local_variable_in_place_of_an_output_key() -> None:
     found = analysed_text("pass", "userdata.part = [[", "part = [[")
-    (item,) = [each for each in found if each.code == "SM314"]
+    (item,) = [one for one in found if one.code == "SM314"]
     assert (item.span.text, item.help) == ("part", "write `userdata.part`")
 
 

@@ -83,9 +83,9 @@ def reported(code: str, out: str = "None", type_: str = "any") -> list[tuple[str
         "cell/tools.py": TOOLS,
     }
     return [
-        (each.code, each.span.text, each.help or "")
-        for each in analysed(files).report
-        if each.code not in ("SM305", "SM306")
+        (item.code, item.span.text, item.help or "")
+        for item in analysed(files).report
+        if item.code not in ("SM305", "SM306")
     ]
 
 
@@ -109,7 +109,7 @@ def test_a_comparison_of_a_number_and_a_list(code: str, expression: str, help: s
 
 def test_a_sum_of_a_number_and_a_text() -> None:
     found = reported('print(userdata.count + "bolts")')
-    assert [each[:2] for each in found] == [("SM311", 'userdata.count + "bolts"')]
+    assert [item[:2] for item in found] == [("SM311", 'userdata.count + "bolts"')]
 
 
 @pytest.mark.parametrize(
@@ -176,7 +176,7 @@ def test_names_that_fit_or_are_not_known(code: str) -> None:
     ],
 )
 def test_one_number_for_a_list(code: str, out: str, found: bool) -> None:
-    codes = [each[0] for each in reported(code, out, '"float<m>[2]"')]
+    codes = [item[0] for item in reported(code, out, '"float<m>[2]"')]
     assert codes == (["SM304"] if found else [])
 
 
@@ -201,8 +201,8 @@ def test_one_number_for_a_number(type_: str) -> None:
     ],
 )  # fmt: skip
 def test_a_collection_for_one_value(code: str, out: str, type_: str, help: str) -> None:
-    found = [each for each in reported(code, out, type_) if each[0] == "SM304"]
-    assert [each[2] for each in found] == ([help] if help else [])
+    found = [item for item in reported(code, out, type_) if item[0] == "SM304"]
+    assert [item[2] for item in found] == ([help] if help else [])
 
 
 @pytest.mark.parametrize(
@@ -220,8 +220,8 @@ def test_a_collection_for_one_value(code: str, out: str, type_: str, help: str) 
     ],
 )  # fmt: skip
 def test_a_collection_with_wrong_parts(out: str, type_: str, help: str) -> None:
-    found = [each for each in reported("", out, type_) if each[0] == "SM304"]
-    assert [each[2][: len(help)] for each in found] == ([help] if help else [])
+    found = [item for item in reported("", out, type_) if item[0] == "SM304"]
+    assert [item[2][: len(help)] for item in found] == ([help] if help else [])
 
 
 # --- comparisons with words
@@ -263,8 +263,8 @@ def test_a_comparison_with_a_word(code: str, word: str, help: str) -> None:
     files["main.yml"] = files["main.yml"].replace(
         "template: Work", "template: Work\n      side: left"
     )
-    report = [each for each in analysed(files).report if each.code == "SM312"]
-    assert [(each.span.text, each.help) for each in report] == ([(word, help)] if help else [])
+    report = [item for item in analysed(files).report if item.code == "SM312"]
+    assert [(item.span.text, item.help) for item in report] == ([(word, help)] if help else [])
 
 
 # --- words that a dictionary lacks
@@ -303,8 +303,8 @@ def test_a_word_that_a_dictionary_lacks(
         .replace("CODE", body)
         .replace("OUT", "None"),
     }
-    report = [each for each in analysed(files).report if each.code == "SM311"]
-    assert [(each.span.text, each.help) for each in report] == found
+    report = [item for item in analysed(files).report if item.code == "SM311"]
+    assert [(item.span.text, item.help) for item in report] == found
 
 
 # --- angles in degrees
@@ -345,7 +345,7 @@ def test_an_angle_in_degrees(code: str, help: str, in_class: bool) -> None:
         "cell/states.py": CLASS.replace("CODE", body).replace("OUT", "None")
         .replace('input_keys=["count"', 'input_keys=["turn", "count"'),
     }  # fmt: skip
-    found = [each.help for each in analysed(files).report if each.code == "SM522"]
+    found = [item.help for item in analysed(files).report if item.code == "SM522"]
     assert found == ([help] if help else [])
 
 
@@ -394,8 +394,8 @@ def test_an_entry_of_a_mapping(code: str, main: str, found: list[tuple[str, str,
         .replace('input_keys=["count"', 'input_keys=["door", "count"'),
         "cell/tools.py": TOOLS,
     }  # fmt: skip
-    report = [each for each in analysed(files).report if each.code == "SM311"]
-    assert [(each.code, each.span.text, each.help) for each in report] == found
+    report = [item for item in analysed(files).report if item.code == "SM311"]
+    assert [(item.code, item.span.text, item.help) for item in report] == found
 
 
 # --- results of functions that return nothing
@@ -435,4 +435,4 @@ def test_a_function_whose_last_line_is_no_value() -> None:
     ],
 )
 def test_a_result_that_nothing_uses_or_that_is_a_value(code: str) -> None:
-    assert [each for each in reported(code) if each[0] == "SM609"] == []
+    assert [item for item in reported(code) if item[0] == "SM609"] == []

@@ -30,7 +30,7 @@ def test_the_result_of_a_method_that_changes_a_list() -> None:
 def test_results_that_are_values(value: str) -> None:
     changes = [BOTH, LISTS, ("self.camera = Camera()", "self.camera = self.tracker = Camera()")]
     line = f"{PART}\n        userdata.parts = {value}"
-    assert [each.code for each in report(*changes, (PART, line)) if each.code == "SM318"] == []
+    assert [item.code for item in report(*changes, (PART, line)) if item.code == "SM318"] == []
 
 
 @pytest.mark.parametrize(
@@ -52,7 +52,7 @@ def test_results_that_are_values(value: str) -> None:
 )
 def test_local_lists(lines: str, help: str | None) -> None:
     found = report((PART, f"{PART}\n        {lines}"))
-    assert [(each.code, each.help) for each in found] == ([("SM609", help)] if help else [])
+    assert [(item.code, item.help) for item in found] == ([("SM609", help)] if help else [])
 
 
 CONSTANT = ("class FindPart(smach.State):\n", "class FindPart(smach.State):\n    OUT = {}\n\n")
@@ -72,7 +72,7 @@ CONSTANT = ("class FindPart(smach.State):\n", "class FindPart(smach.State):\n   
 def test_a_text_in_parentheses_is_no_tuple(constant: str, use: str, found: list[str]) -> None:
     head = (CONSTANT[0], CONSTANT[1].format(constant))
     items = report(head, ('output_keys=["part"]', f"output_keys={use}"))
-    assert [each.span.text for each in items if each.code == "SM609"] == found
+    assert [item.span.text for item in items if item.code == "SM609"] == found
 
 
 # --- outcomes and values of helpers
@@ -96,7 +96,7 @@ def with_helper(value: str, *changes: tuple[str, str]) -> list[tuple[str, str]]:
     for old, new in changes:
         assert old in text
         text = text.replace(old, new)
-    return [(each.code, each.span.text) for each in report(files={"cell/find.py": text})]
+    return [(item.code, item.span.text) for item in report(files={"cell/find.py": text})]
 
 
 def test_an_outcome_in_a_local_variable_is_that_of_the_helper() -> None:
@@ -118,7 +118,7 @@ def test_texts_that_a_helper_returns_are_values(side: str, found: list[str]) -> 
         ("class FindPart", f"{helper}class FindPart"),
         (PART, "userdata.part = side_of(userdata.parts)"),
     )
-    assert [each.span.text for each in items if each.code == "SM304"] == found
+    assert [item.span.text for item in items if item.code == "SM304"] == found
 
 
 # --- loops

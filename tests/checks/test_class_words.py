@@ -58,8 +58,8 @@ def test_types_of_a_script_in_an_interface() -> None:
     files["templates/Find.yml"] = FIND.replace(
         "output_keys: {part: str}", "output_keys: {part: Part}"
     )
-    found = [each for each in analysed(files).report if each.code in ("SM017", "SM306")]
-    assert [(each.code, each.span.text) for each in found] == [
+    found = [item for item in analysed(files).report if item.code in ("SM017", "SM306")]
+    assert [(item.code, item.span.text) for item in found] == [
         ("SM017", "Part"),
         ("SM306", "Other"),
     ]
@@ -93,7 +93,7 @@ states:
     rules = "def best_part(ud):\n    return ud.parts[0]\n"
     files = {"main.yml": main.replace("NAME", name), "templates/Own.tpl.py": BASE}
     report_ = analysed({**files, "cell/rules.py": rules, "cell/__init__.py": ""}).report
-    (item,) = [each for each in report_ if each.code == "SM019"]
+    (item,) = [one for one in report_ if one.code == "SM019"]
     assert (item.help == f"did you mean `{near}`?") == bool(near)
 
 
@@ -112,16 +112,16 @@ STOP = "outcomes: {found: {}, nothing: {}, preempted: {}}\nblocking: true\n"
 def test_a_time_limit_that_cannot_end_the_state(timeout: str) -> None:
     steps = "nothing: failed, preempted: failed" + (", timeout: failed" if timeout else "")
     (item,) = [
-        each
-        for each in report(
+        one
+        for one in report(
             ("outcomes: {found: {}, nothing: {}}\n", STOP),
             ('[FOUND, "nothing"]', '[FOUND, "nothing", "preempted"]'),
             ("nothing: failed", steps),
             ("      template: Find\n", f"      template: Find\n{timeout}"),
         )
-        if each.code == "SM315"
+        if one.code == "SM315"
     ]
-    messages = [each.message for each in item.related]
+    messages = [one.message for one in item.related]
     assert ("this time limit cannot end `FIND`" in messages) == bool(timeout)
     assert item.effect == "the robot goes on until the state ends by itself"
 

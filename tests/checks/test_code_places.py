@@ -102,10 +102,10 @@ def test_a_slip_in_code_is_one_finding_at_its_place(
     assert old in FILES[file]
     files = FILES | {file: FILES[file].replace(old, new, 1)}
     report = analyse(Source("main.yml", MAIN), memory_library(files, BUILT_IN), []).report
-    found = [(each.code, each.span.text, each.help) for each in report]
+    found = [(item.code, item.span.text, item.help) for item in report]
     assert expected in found
-    assert "SM315" not in [each[0] for each in found]
-    assert [each for each in found if each[0] == "SM608"] == [expected][expected[0] != "SM608" :]
+    assert "SM315" not in [item[0] for item in found]
+    assert [item for item in found if item[0] == "SM608"] == [expected][expected[0] != "SM608" :]
 
 
 TEMPLATE = """\
@@ -142,7 +142,7 @@ def test_a_slip_in_a_template_is_at_its_word(old: str, new: str, marked: str, he
     report = analyse(
         Source("main.yml", script), memory_library(files, BUILT_IN), [], render=True
     ).report
-    found = [(each.span.text, each.help) for each in report if each.code == "SM605"]
+    found = [(item.span.text, item.help) for item in report if item.code == "SM605"]
     assert found == [(marked, help)]
 
 
@@ -153,7 +153,7 @@ def test_a_parameter_of_another_name_is_one_finding() -> None:
     }
     script = MAIN.replace("template: Move,", "template: Move, arm: left,")
     report = analyse(Source("main.yml", script), memory_library(files, BUILT_IN), []).report
-    found = [(each.span.text, each.help) for each in report if each.code == "SM609"]
+    found = [(item.span.text, item.help) for item in report if item.code == "SM609"]
     assert found == [("limb", "rename the parameter `limb` to `arm`, which the script sets")]
 
 
@@ -172,7 +172,7 @@ def test_a_misspelt_outcome_in_a_header_is_one_finding() -> None:
         ),
     }
     report = analyse(Source("main.yml", MAIN), memory_library(files, BUILT_IN), []).report
-    found = [(each.span.text, each.help) for each in report if each.code == "SM609"]
+    found = [(item.span.text, item.help) for item in report if item.code == "SM609"]
     assert found == [("lst", "did you mean `lost`?")]
 
 
@@ -186,5 +186,5 @@ def test_a_template_that_does_not_exist_is_reported_at_its_name() -> None:
     report = analyse(
         Source("main.yml", script), memory_library(files, BUILT_IN), [], render=True
     ).report
-    found = [(each.span.text, each.help) for each in report if each.code == "SM605"]
+    found = [(item.span.text, item.help) for item in report if item.code == "SM605"]
     assert found == [("move.tpl.py", "did you mean `Move.tpl.py`?")]

@@ -96,7 +96,7 @@ def test_a_combination_is_missed_if_and_only_if_one_is_uncovered(node: Concurren
     found = said(node, "SM401")
     open_ = [ended for ended in every(node) if not holding(node, ended)]
     if node.default_outcome:
-        unstopped = [each for each in open_ if not {"aborted", "preempted"} & set(each.values())]
+        unstopped = [one for one in open_ if not {"aborted", "preempted"} & set(one.values())]
         assert bool(found) == (bool(unstopped) and bool(node.rules))
     else:
         assert bool(found) == bool(open_)
@@ -172,7 +172,7 @@ def asked(node: Concurrence, ended: Combination) -> set[str]:
 def test_a_failure_is_masked_if_and_only_if_a_combination_hides_it(node: Concurrence) -> None:
     assume(node.default_outcome)
     good = GOOD | always_good(node)
-    hiding = [each for each in every(node, ("preempted",)) if masks(node, each, good)]
+    hiding = [one for one in every(node, ("preempted",)) if masks(node, one, good)]
     found = said(node, "SM404")
     assert {item.finding.message.split("`")[3] for item in found} == {
         result(node, ended) for ended in hiding
@@ -247,7 +247,7 @@ def test_shown_parts_decide_and_are_as_small_as_they_can_be(
     part = rules.shown(found, {}, avoided)
 
     def decides(kept: Mapping[str, str]) -> bool:
-        fitting = [each for each in every(node) if kept.items() <= each.items()]
+        fitting = [item for item in every(node) if kept.items() <= item.items()]
         return all(
             not all(ended[child] == end for child, end in rules.conditions[number].items())
             for ended in fitting

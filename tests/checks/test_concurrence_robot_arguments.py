@@ -93,8 +93,8 @@ def test_a_claim_stands_in_the_arguments_as_it_is_written(tmp_path: Path) -> Non
     """Two calls of a sub-script fill in two limbs: the messages differ, the fault is one."""
     files = {MAIN: SCRIPT, "sub.yml": SUB, "templates/Grasp.yml": GRASP}
     found = [item.finding for item in findings(tmp_path, files) if item.code == "SM406"]
-    assert [each.message.split("`")[5] for each in found] == ["arm.ONE"]
-    assert {each.arguments for each in found} == {("arm.{limb}", "LEFT", "RIGHT")}
+    assert [one.message.split("`")[5] for one in found] == ["arm.ONE"]
+    assert {one.arguments for one in found} == {("arm.{limb}", "LEFT", "RIGHT")}
 
 
 def test_two_keys_that_cpp_cannot_store_differ(tmp_path: Path) -> None:
@@ -108,4 +108,4 @@ states:
 """
     }
     found = [item.finding for item in findings(tmp_path, files, "cpp") if item.code == "SM601"]
-    assert [each.arguments for each in found] == [("C++", "one"), ("C++", "two")]
+    assert [one.arguments for one in found] == [("C++", "one"), ("C++", "two")]

@@ -26,7 +26,7 @@ ENDS = "{succeeded: {}, aborted: {failure: true}, preempted: {}}"
 
 def look(outcomes: str, transitions: str) -> list[tuple[str, str, str | None]]:
     script = LOOK.replace("OUTCOMES", outcomes).replace("TRANSITIONS", transitions)
-    return [each for each in reported({"main.yml": script}) if each[0] != "SM203"]
+    return [item for item in reported({"main.yml": script}) if item[0] != "SM203"]
 
 
 @pytest.mark.parametrize(
@@ -61,7 +61,7 @@ def look(outcomes: str, transitions: str) -> list[tuple[str, str, str | None]]:
     ],
 )  # fmt: skip
 def test_an_unknown_outcome(outcomes: str, transitions: str, found: list[tuple[str, str]]) -> None:
-    assert look(outcomes, transitions) == [("SM102", *each) for each in found]
+    assert look(outcomes, transitions) == [("SM102", *item) for item in found]
 
 
 RETRY = """\

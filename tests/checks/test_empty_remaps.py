@@ -34,7 +34,7 @@ def text_with(inputs: str, offset: str) -> str:
 
 def found(inputs: str, offset: str) -> list[tuple[str, str, str, str | None]]:
     report = analysed({"main.yml": text_with(inputs, offset)}).report
-    return [(each.code, each.severity.value, each.span.text, each.help) for each in report]
+    return [(item.code, item.severity.value, item.span.text, item.help) for item in report]
 
 
 @pytest.mark.parametrize(

@@ -126,7 +126,7 @@ def test_what_only_some_runs_evaluate_is_a_warning() -> None:
 
 def test_the_values_are_shown() -> None:
     (item,) = found("ud.x + 1", 'userdata x = "left"')
-    assert [each.message for each in item.finding.related] == ['`x` is `"left"`']
+    assert [one.message for one in item.finding.related] == ['`x` is `"left"`']
 
 
 def test_other_code_is_judged_by_itself() -> None:
@@ -191,7 +191,7 @@ states:
       input_keys: [data]
       transitions: {{succeeded: succeeded}}
 """
-    codes = [each.code for each in analysed({"main.yml": text}).report]
+    codes = [item.code for item in analysed({"main.yml": text}).report]
     assert codes == (["SM016"] if bare else [])
 
 
@@ -263,11 +263,11 @@ states:
   - SHOW: {template: TYPE, input_keys: [slots, place], transitions: {succeeded: done}}
 """
     (fault,) = [
-        each
-        for each in analysed({"main.yml": text.replace("TYPE", "PrintUserdataState")}).report
-        if each.code == "SM311"
+        item
+        for item in analysed({"main.yml": text.replace("TYPE", "PrintUserdataState")}).report
+        if item.code == "SM311"
     ]
     assert fault.span.text == "ud.places[3]"
     assert fault.help == "use an index up to `[2]`"
     own = text.replace("TYPE", "ScriptedState, outcomes: [succeeded]")
-    assert "SM311" not in {each.code for each in analysed({"main.yml": own}).report}
+    assert "SM311" not in {item.code for item in analysed({"main.yml": own}).report}

@@ -205,7 +205,7 @@ PLACES = [
 def test_a_finding_of_a_rule_is_at_the_slip(before: str, after: str, place: str, help: str) -> None:
     assert PATROL.count(before) == 1
     found = reported({"main.yml": PATROL.replace(before, after)})
-    (mine,) = [each for each in found if f"{each[0]} {each[1]}" == place]
+    (mine,) = [item for item in found if f"{item[0]} {item[1]}" == place]
     assert help in (mine[2] or "")
     assert "SM019" not in [code for code, _, _ in found]
 
@@ -388,7 +388,7 @@ def test_the_item_of_a_loop_under_another_name_is_marked() -> None:
         "      transitions: {held: BOTH, slipped: LET_GO, preempted: aborted}",
     )
     (found,) = (item for item in analysed({"main.yml": main}).report if item.code == "SM301")
-    marked = [(each.span.text, each.message) for each in found.finding.related]
+    marked = [(one.span.text, one.message) for one in found.finding.related]
     assert ("blok", "the loop calls its item `blok`") in marked
 
 
@@ -566,7 +566,7 @@ def test_an_example_within_the_limits_of_a_variable(fact: str, value: str | None
     main = WITH_GRAB.replace("force: 0.5\n      ", "")
     grab = GRAB.replace("{type: float, min: 0, max: 1}", fact)
     files = {"main.yml": main, "templates/Grab.yml": grab, "grab.py": GRAB_CODE}
-    ((code, _, help),) = [each for each in reported(files) if each[0] != "SM304"]
+    ((code, _, help),) = [item for item in reported(files) if item[0] != "SM304"]
     assert code == "SM005"
     assert value is None or help == f"add `force: {value}`"
 
@@ -618,7 +618,7 @@ def test_a_transition_out_of_a_container() -> None:
 
 def test_a_function_without_quotes_in_braces() -> None:
     main = PATROL.replace("userdata: {blocks: [red, green]}", "userdata: {blocks: lambda ud: []}")
-    assert [each[0::2] for each in reported({"main.yml": main})] == [
+    assert [item[0::2] for item in reported({"main.yml": main})] == [
         ("SM001", "put the code in quotes: `'lambda ud: ...'`")
     ]
 

@@ -121,5 +121,5 @@ def test_witnesses_follow_transitions(flow: Steps, forever: bool) -> None:
 def test_rules_find_the_same_wherever_the_states_stand(flow: Steps) -> None:
     root = built(flow)
     turned = replace(root, children=root.children[::-1])
-    codes = [sorted({item.code for item in report(each)}) for each in (root, turned)]
+    codes = [sorted({item.code for item in report(one)}) for one in (root, turned)]
     assert codes[0] == codes[1]

@@ -45,8 +45,8 @@ def reported(steps: str, **targets: str) -> list[str]:
         ends += f", aborted: {aborted}" if name != "wait" else ""
         text += f"  - S{number}: {{{STEPS[name]}, transitions: {{{ends}}}}}\n"
     report = analyse(Source("main.yml", text), memory_library({}, BUILT_IN), []).report
-    assert not [each for each in report if each.code < "SM1"]
-    return [str(each.finding.node) for each in report if each.code == "SM513"]
+    assert not [item for item in report if item.code < "SM1"]
+    return [str(item.finding.node) for item in report if item.code == "SM513"]
 
 
 @pytest.mark.parametrize(
@@ -134,7 +134,7 @@ def test_a_state_named_after_opening_is_to_open(name: str) -> None:
 
     def helps(text: str) -> list[tuple[str, str | None]]:
         report = analyse(Source("main.yml", text), memory_library({}, BUILT_IN), []).report
-        return [(each.span.text, each.help) for each in report if each.code == "SM513"]
+        return [(item.span.text, item.help) for item in report if item.code == "SM513"]
 
     assert helps(text) == [("close", f"write `command: open` in `{name}`")]
     ((place, help),) = helps(text.replace(name, "SQUEEZE"))

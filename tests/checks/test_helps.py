@@ -303,7 +303,7 @@ def test_a_help_in_two_places_removes_the_finding(
     tmp_path: Path, code: str, script: str, help: str, changes: dict[str, str]
 ) -> None:
     found = [item.help or "" for item in _report(tmp_path, script) if item.code == code]
-    assert [each for each in found if each.startswith(help)] != []
+    assert [one for one in found if one.startswith(help)] != []
     for old, new in changes.items():
         assert old in script
         script = script.replace(old, new)
@@ -365,8 +365,8 @@ states:
       for_each: {item: point, in: poses}
       transitions: {succeeded: done, preempted: done}
 """
-    found = [each for each in analysed({"main.yml": script}).report if each.code == "SM301"]
-    assert [[place.message for place in each.related] for each in found] == [
+    found = [item for item in analysed({"main.yml": script}).report if item.code == "SM301"]
+    assert [[place.message for place in item.related] for item in found] == [
         ["`VISIT` reads `pose` here", "the loop calls its item `point`"]
     ]
 
@@ -396,7 +396,7 @@ states:
 output_keys: [more]
 """
     report = analysed({"main.yml": text}).report
-    assert [each.help for each in report if each.code in ("SM311", "SM312")] == [help]
+    assert [item.help for item in report if item.code in ("SM311", "SM312")] == [help]
 
 
 SENSE = """\

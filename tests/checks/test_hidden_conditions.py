@@ -30,7 +30,7 @@ states:
 def hidden(first: str, second: str) -> list[tuple[str, str]]:
     text = MAIN.replace("FIRST", first).replace("SECOND", second)
     found = analysed({"main.yml": text}).report
-    return [(each.span.text, each.help or "") for each in found if each.code == "SM203"]
+    return [(item.span.text, item.help or "") for item in found if item.code == "SM203"]
 
 
 ORDER = [("top", "list `top` before `high` in the `outcomes` of `CHECK`")]

@@ -57,18 +57,18 @@ def test_both_places_are_told() -> None:
         "the initial value of `x` in `A` is never used: `B` overwrites it"
     )
     assert item.span.line == 6
-    assert [each.span.line for each in item.finding.related] == [7]
+    assert [one.span.line for one in item.finding.related] == [7]
 
 
 def test_the_userdata_of_the_container_itself() -> None:
     (item,) = found(own="x: 1", three="x: [1]")
     assert "value of `x` in `sm` is never used: `C` overwrites it" in item.finding.message
-    assert [item.span.line, *(each.span.line for each in item.finding.related)] == [4, 8]
+    assert [item.span.line, *(one.span.line for one in item.finding.related)] == [4, 8]
 
 
 def test_all_places_of_one_key_are_one_finding() -> None:
     (item,) = found(own="x: 1", one="x: 2", two="x: 3", three="x: 2")
-    assert [item.span.line, *(each.span.line for each in item.finding.related)] == [4, 7, 8]
+    assert [item.span.line, *(one.span.line for one in item.finding.related)] == [4, 7, 8]
 
 
 @pytest.mark.parametrize(

@@ -286,7 +286,7 @@ def test_the_number_of_another_interface() -> None:
         == f"add `lost` to the outcomes of the class, then set `smachac_interface` to {right}"
     )
     assert str(finding.span) == "arm/grasp.hpp:12:24"
-    assert [str(each.span) for each in finding.related] == ["arm/grasp.hpp:16:54", "main.yml:11:5"]
+    assert [str(one.span) for one in finding.related] == ["arm/grasp.hpp:16:54", "main.yml:11:5"]
 
 
 @pytest.mark.parametrize("spelling", ["{0}", "0X{1}u", "{2}U", "0x{3}'{4}UL"])

@@ -114,7 +114,7 @@ def asking(*keys: str, to: dict[str, str], types: str = "int", **more: Any) -> L
     text = " + ".join(f"ud.{key}" for key in keys)
     made = leaf("ASK", to, ins=" ".join(keys), callbacks={"again": f"`lambda ud: {text} < 3`"},
                 type="ConditionalOutcomeState", **more)  # fmt: skip
-    variables = tuple(replace(each, role="conditions") for each in made.variables)
+    variables = tuple(replace(variable, role="conditions") for variable in made.variables)
     inputs = tuple(replace(key, type=Type(types)) for key in made.inputs)
     return replace(made, variables=variables, inputs=inputs)
 
@@ -205,5 +205,5 @@ states:
 )
 def test_items_without_an_end(items: str, on: str, expected: list[str]) -> None:
     text = LOOP.replace("ITEMS", items).replace("[ON]", f"[{on}]")
-    traps = [each for each in analysed({"main.yml": text}).report if each.code == "SM202"]
-    assert [f"SM202 {each.span.text}" for each in traps] == expected
+    traps = [item for item in analysed({"main.yml": text}).report if item.code == "SM202"]
+    assert [f"SM202 {trap.span.text}" for trap in traps] == expected

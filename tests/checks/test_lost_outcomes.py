@@ -74,9 +74,9 @@ def findings(old: str, new: str, scale: str = SCALE) -> list[tuple[str, str, str
         "cell/drivers.py": scale,
     }
     return [
-        (each.code, each.span.text, each.message, each.help or "")
-        for each in analysed(files).report
-        if each.severity.value != "info"
+        (item.code, item.span.text, item.message, item.help or "")
+        for item in analysed(files).report
+        if item.severity.value != "info"
     ]
 
 
@@ -132,4 +132,6 @@ END = '            return "error"\n        self.log(weight)\n        print(weigh
     ],
 )  # fmt: skip
 def test_code_that_is_right_or_cannot_be_judged(old: str, new: str, scale: str) -> None:
-    assert [each for each in findings(old, new, scale) if each[0] in ("SM609", "SM315")] == []
+    assert [
+        finding for finding in findings(old, new, scale) if finding[0] in ("SM609", "SM315")
+    ] == []

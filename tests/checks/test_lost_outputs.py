@@ -57,7 +57,7 @@ def round_(*, out: str = "", after: str = "succeeded", initial: str = "HAND_OVER
         text = text.replace(text[text.index("        - CHECK") : text.index("  - REPORT")], "")
     if not report:
         text = text.replace(REPORT, "").replace("succeeded: REPORT", "succeeded: all")
-    return [each for each in reported({"main.yml": text}) if each[0] != "SM203"]
+    return [item for item in reported({"main.yml": text}) if item[0] != "SM203"]
 
 
 @pytest.mark.parametrize("after", ["succeeded", "CHECK"])
@@ -121,7 +121,7 @@ code: {python: "cal.shots:TakeShot"}
 
 def shots(old: str = "", new: str = "") -> list[tuple[str, str, str | None]]:
     files = {"main.yml": SHOTS.replace(old, new), "templates/TakeShot.yml": TAKE}
-    return [each for each in reported(files) if each[0] not in ("SM404", "SM608", "SM401")]
+    return [item for item in reported(files) if item[0] not in ("SM404", "SM608", "SM401")]
 
 
 def test_a_result_goes_through_two_containers() -> None:
@@ -175,7 +175,7 @@ outcomes: [ok]
 
 def added(text: str) -> list[tuple[str, str, str | None]]:
     files = {"main.yml": text, "templates/Add.yml": ADD_ONE}
-    return [each for each in reported(files) if each[0] in ("SM305", "SM307")]
+    return [item for item in reported(files) if item[0] in ("SM305", "SM307")]
 
 
 def test_only_the_interface_lists_the_key_that_is_lost() -> None:
@@ -244,7 +244,7 @@ def cleared(code: str = "ud.tries + 1", *, drive: str = "", out: str = "", old: 
             new: str = "") -> list[tuple[str, str, str | None]]:  # fmt: skip
     text = CLEAR.replace("CODE", code).replace("OUT", out)
     text = text.replace("blocked]DRIVE", f"blocked]{drive}").replace(old, new)
-    return [each for each in reported({"main.yml": text}) if each[0] != "SM203"]
+    return [item for item in reported({"main.yml": text}) if item[0] != "SM203"]
 
 
 @pytest.mark.parametrize(
@@ -264,7 +264,7 @@ def test_a_count_begins_again_in_each_run(code: str, initial: str) -> None:
     )
     text = text.replace("ud.tries > ud.max_tries", compared).replace("OUT", "")
     found = reported({"main.yml": text.replace("CODE", code)})
-    assert [each for each in found if each[0] == "SM307"] == KEPT
+    assert [item for item in found if item[0] == "SM307"] == KEPT
 
 
 def test_a_count_of_a_renamed_container_key() -> None:
@@ -272,7 +272,7 @@ def test_a_count_of_a_renamed_container_key() -> None:
         "OUT", "\n      remapping: {tries: rounds}"
     )
     text = text.replace("blocked]DRIVE", "blocked]").replace("CODE", "ud.tries + 1")
-    assert [each for each in reported({"main.yml": text}) if each[0] == "SM307"] == KEPT
+    assert [item for item in reported({"main.yml": text}) if item[0] == "SM307"] == KEPT
 
 
 def test_a_count_that_is_passed_on_is_not_lost() -> None:
@@ -301,7 +301,7 @@ def test_the_item_of_a_loop_is_not_lost() -> None:
     text = text.replace("again: DRIVE, ", "").replace(
         "give_up: failed}", "give_up: failed, succeeded: delivered}"
     )
-    assert [each for each in reported({"main.yml": text}) if each[0] == "SM307"] == []
+    assert [item for item in reported({"main.yml": text}) if item[0] == "SM307"] == []
 
 
 SLOTS = """\
@@ -347,6 +347,6 @@ states:
 
 @pytest.mark.parametrize("out", ["", "\n            output_keys: [placed]"])
 def test_a_count_of_an_iterator_leaves_a_concurrence(out: str) -> None:
-    found = [each for each in reported({"main.yml": SLOTS.replace("OUT", out)}) if "7" in each[0]]
+    found = [item for item in reported({"main.yml": SLOTS.replace("OUT", out)}) if "7" in item[0]]
     help = "write `output_keys: [placed]` in `FILL`"
     assert found == ([] if out else [("SM307", "FILL", help)])

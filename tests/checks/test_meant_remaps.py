@@ -39,7 +39,7 @@ def found(
     text = PICK.replace("JOINTS", joints).replace("TO}", f"{to}}}").replace("PRESET", preset)
     types = {name: each.replace("TYPE", type_) for name, each in TYPES.items()}
     every = printed({"main.yml": text, **types})
-    return [each for each in every if each[:2] != ("SM305", "x")]
+    return [item for item in every if item[:2] != ("SM305", "x")]
 
 
 @pytest.mark.parametrize(
@@ -54,7 +54,7 @@ def found(
     ],
 )
 def test_a_result_that_nothing_reads(to: str, joints: str, preset: str, help: str) -> None:
-    every = [each for each in found(to, joints, preset) if each[1] != "hover_offset"]
+    every = [item for item in found(to, joints, preset) if item[1] != "hover_offset"]
     ((code, place, text),) = every
     assert (code, place) == ("SM302", to)
     assert text.startswith(help)

@@ -43,7 +43,7 @@ def findings(
     script = STATE.format(template=template, fields=fields, transitions=transitions)
     library = library or memory_library(FILES, BUILT_IN)
     report = analyse(Source("main.yml", script), library, []).report
-    found = [each for each in report if each.code in ("SM512", "SM318")]
+    found = [item for item in report if item.code in ("SM512", "SM318")]
     return [(e.code, e.span.text, e.finding.message, e.finding.help) for e in found]
 
 

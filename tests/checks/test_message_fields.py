@@ -48,8 +48,8 @@ states:
 def faults(script: str, files: dict[str, str] = FILES) -> list[tuple[str, str, str | None]]:
     """The marked text, the message and the help of each finding of SM512."""
     report = analyse(Source("main.yml", script), memory_library(files, BUILT_IN), []).report
-    found = [each for each in report if each.code == "SM512"]
-    return [(each.span.text, each.finding.message, each.finding.help) for each in found]
+    found = [item for item in report if item.code == "SM512"]
+    return [(item.span.text, item.finding.message, item.finding.help) for item in found]
 
 
 def service(fields: str, data: str = "", type: str = "cell_msgs/Grasp") -> str:
@@ -145,7 +145,7 @@ def test_of_several_definitions_one_may_have_the_field() -> None:
     for key, count in (("width", 0), ("opening", 0), ("force", 1)):
         script = service(slots.format(key=key), f"{key}: 0.1")
         report = analyse(Source("main.yml", script), library, []).report
-        assert [each.code for each in report].count("SM512") == count
+        assert [item.code for item in report].count("SM512") == count
 
 
 MESSAGE = """
@@ -166,8 +166,8 @@ states:
 def untyped(script: str) -> list[tuple[str, str]]:
     """The marked text and the message of each finding of SM515."""
     report = analyse(Source("main.yml", script), memory_library({}, BUILT_IN), []).report
-    found = [each for each in report if each.code == "SM515"]
-    return [(each.span.text, each.finding.message) for each in found]
+    found = [item for item in report if item.code == "SM515"]
+    return [(item.span.text, item.finding.message) for item in found]
 
 
 @pytest.mark.parametrize(
@@ -219,7 +219,7 @@ LAMP = {"cell_msgs/msg/Lamp.msg": "bool on\n", **FILES}
 def test_a_type_of_another_kind(
     type: str, files: dict[str, str], found: tuple[str, str] | None
 ) -> None:
-    lines = [each[:2] for each in faults(service("request: null", type=type), files)]
+    lines = [fault[:2] for fault in faults(service("request: null", type=type), files)]
     assert lines == ([found] if found is not None else [])
 
 
@@ -254,7 +254,7 @@ SPEED = {
 )
 def test_a_published_mapping(data: str, found: list[str]) -> None:
     script = PUBLISH.replace("DATA", data).replace("TYPE", "cell_msgs/msg/Speed")
-    assert [each[0] for each in faults(script, SPEED)] == found
+    assert [fault[0] for fault in faults(script, SPEED)] == found
     assert faults(script.replace("cell_msgs/msg/Speed", "other_msgs/Speed"), SPEED) == []
 
 
@@ -279,7 +279,7 @@ def test_a_number_compared_with_a_text(condition: str, found: str) -> None:
     function = f"lambda ud, status, result: 'succeeded' if {condition} else 'aborted'"
     script = ACTION.format(type="cell_msgs/Tidy", goal="{room: hall}")
     script = script.replace("      goal", f'      result_cb: "{function}"\n      goal')
-    assert [each[0] for each in faults(script)] == ([found] if found else [])
+    assert [fault[0] for fault in faults(script)] == ([found] if found else [])
 
 
 STOP = """
@@ -304,7 +304,7 @@ def test_the_unread_key_with_a_type_is_the_missing_one() -> None:
     codes = [code for code, *_ in printed({"main.yml": script})]
     assert "SM515" in codes
     assert "SM305" not in codes
-    (found,) = [each for each in report if each.code == "SM515"]
+    (found,) = [item for item in report if item.code == "SM515"]
     assert "`msg_type: stop_type` to its `remapping`" in (found.help or "")
 
 
@@ -322,7 +322,7 @@ def test_a_field_one_level_too_high(msg: str, help: str | None) -> None:
     script = STOP.format(msg=msg, keys=TYPED[0], remapping=TYPED[1])
     found = [text or "" for _, _, text in faults(script, {})]
     assert len(found) == (help is not None)
-    assert all(each.startswith(help or "") for each in found)
+    assert all(item.startswith(help or "") for item in found)
 
 
 @pytest.mark.parametrize(
@@ -360,10 +360,10 @@ def test_the_help_for_a_list_and_for_a_time(goal: str, help: str | None) -> None
         memory_library(files, BUILT_IN),
         [],
     ).report
-    found = [each for each in report if each.code == "SM512"]
-    assert [each.help for each in found] == ([help] if help else [])
+    found = [item for item in report if item.code == "SM512"]
+    assert [item.help for item in found] == ([help] if help else [])
     name = goal.strip("{").partition(":")[0]
-    assert all(each.related[0].span.text == name for each in found)
+    assert all(item.related[0].span.text == name for item in found)
 
 
 @pytest.mark.parametrize(
@@ -429,7 +429,7 @@ def test_a_mapping_in_a_slot(pose: str, expected: list[tuple[str, str]]) -> None
         data=f"grip: {pose}",
         fields="request_slots: [pose]\n      input_keys: [pose]\n      remapping: {pose: grip}",
     )
-    assert [each[0::2] for each in faults(script)] == expected
+    assert [fault[0::2] for fault in faults(script)] == expected
 
 
 BOUNDED = {
@@ -594,4 +594,4 @@ states:
 def test_the_order_of_a_list_and_a_number(code: str, help: str | None) -> None:
     files = {"cell_msgs/msg/Scan.msg": "float32[] ranges\nstring[3] names\nbool ok\n"}
     found = faults(SCAN.format(code=code), files)
-    assert [each[2] for each in found] == ([help] if help else [])
+    assert [item[2] for item in found] == ([help] if help else [])

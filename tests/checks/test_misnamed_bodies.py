@@ -49,6 +49,6 @@ def test_one_finding_at_the_state_that_loads_it(
     own: str, apart: str, body: str, count: int, help: str
 ) -> None:
     report = analysed({"main.yml": SCRIPT.format(own=own, apart=apart, body=body)}).report
-    found = [each.help or "" for each in report if each.code == "SM521"]
+    found = [item.help or "" for item in report if item.code == "SM521"]
     assert len(found) == count
-    assert all(each.startswith(help) for each in found)
+    assert all(item.startswith(help) for item in found)

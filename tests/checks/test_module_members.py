@@ -74,9 +74,9 @@ def findings(old: str, new: str, hardware: str = HARDWARE) -> list[tuple[str, st
         "cell/hardware.py": hardware,
     }
     return [
-        (each.code, each.span.text, each.help or "")
-        for each in analysed(files).report
-        if each.severity.value != "info"
+        (item.code, item.span.text, item.help or "")
+        for item in analysed(files).report
+        if item.severity.value != "info"
     ]
 
 
@@ -118,4 +118,4 @@ def test_one_fault(old: str, new: str, place: str, help: str) -> None:
 )
 def test_code_that_is_right_or_cannot_be_judged(old: str, new: str, hardware: str) -> None:
     found = findings(old, new, hardware)
-    assert [each for each in found if each[0] == "SM609"] == []
+    assert [item for item in found if item[0] == "SM609"] == []

@@ -39,9 +39,9 @@ def faults(script: str, code: str, **files: str) -> list[tuple[str, str]]:
         given[f"templates/{name}.yml"] = f"name: {name}\n{text}"
         given[f"templates/{name}.tpl.py"] = ""
     report = analyse(Source("main.yml", script), memory_library(given, BUILT_IN), []).report
-    assert not [each for each in report if each.code in ("SM003", "SM004", "SM005", "SM018")]
-    found = [each for each in report if each.code == code]
-    return [(each.span.text, each.finding.message) for each in found]
+    assert not [item for item in report if item.code in ("SM003", "SM004", "SM005", "SM018")]
+    found = [item for item in report if item.code == code]
+    return [(item.span.text, item.finding.message) for item in found]
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from tests.trust.project_text import analysed
 
 def helps(text: str, code: str, **files: str) -> list[str]:
     report = analysed({"main.yml": text, **files}).report
-    return [each.help or "" for each in report if each.code == code]
+    return [item.help or "" for item in report if item.code == code]
 
 
 PATH = """
@@ -37,7 +37,7 @@ states:
 def test_a_property_with_two_names_swapped(written: str, meant: str | None) -> None:
     text = PATH.replace("PROPERTY", f"properties: [{written}]")
     analysis = analysed({"main.yml": text})
-    repairs = [each.repair for each in clusters(analysis, analysis.report, again(analysis))]
+    repairs = [cluster.repair for cluster in clusters(analysis, analysis.report, again(analysis))]
     right = [*edited_texts(repairs[0].edits).values()] if repairs else []
     assert right == ([text.replace(written, meant)] if meant is not None else [])
 
@@ -106,7 +106,7 @@ MOVE = """
 
 def test_one_param_of_a_call_chooses_two_resources() -> None:
     report = analysed({"main.yml": PARTS, "move.yml": MOVE}).report
-    (found,) = [each for each in report if each.code == "SM406"]
+    (found,) = [item for item in report if item.code == "SM406"]
     assert (found.span.line, found.span.text) == (17, "left")
     assert "claim `arm.left` and `gripper.left` at the same time" in found.message
     assert (found.help or "").startswith("write `right` in place of `left`, or put")
@@ -128,7 +128,7 @@ states:
 def test_a_rotation_with_three_numbers() -> None:
     text = POSE.replace("VALUE", "[[0.5, 0.0, 0.1], [0.0, 0.0, 1.57]]")
     report = analysed({"main.yml": text}).report
-    (found,) = [each.message for each in report if each.code == "SM501"]
+    (found,) = [item.message for item in report if item.code == "SM501"]
     start = "the rotation in `goal` has 3 numbers, but a `Pose` needs 4 (a quaternion)"
     assert found.startswith(start)
 
@@ -214,7 +214,7 @@ states:
 )
 def test_an_answer_without_another_state_of_its_type(kind: str, place: str, start: str) -> None:
     report = analysed({"main.yml": LIGHTS.replace("KIND", kind)}).report
-    (found,) = [each for each in report if each.code == "SM701"]
+    (found,) = [item for item in report if item.code == "SM701"]
     assert found.span.text == place
     assert (found.help or "").startswith(start)
 
@@ -222,7 +222,7 @@ def test_an_answer_without_another_state_of_its_type(kind: str, place: str, star
 def test_properties_without_dashes() -> None:
     text = LIGHTS.replace("  - after: {LIT: DARK}", "  after: {LIT: DARK}\n  at_most: {LIT: 3}")
     report = analysed({"main.yml": text.replace("KIND", "SleepState, time: 1.0")}).report
-    (found,) = [each for each in report if each.code == "SM004"]
+    (found,) = [item for item in report if item.code == "SM004"]
     assert found.help == "begin each property with a dash: `- after: {LIT: DARK}`"
 
 
@@ -316,7 +316,7 @@ def test_a_rotation_in_an_item_of_a_list() -> None:
     text = TURN.replace("TYPES", "types: {Part: {id: int, at: Pose}}")
     text = text.replace("VALUE", "{parts: [{id: 1, at: [[0, 0, 0], [0, 0, 1]]}]}")
     report = analysed({"main.yml": text}).report
-    (found,) = [each for each in report if each.code == "SM501"]
+    (found,) = [item for item in report if item.code == "SM501"]
     assert found.message.startswith("the rotation in `at` of the first item of `parts` has 3")
     assert found.span.text == "[0, 0, 1]"
 
@@ -336,7 +336,7 @@ states:
 
 def test_a_param_as_a_text() -> None:
     report = analysed({"main.yml": FORCE}).report
-    assert [each.code for each in report] == ["SM306", "SM304"]
+    assert [item.code for item in report] == ["SM306", "SM304"]
     items, repair = shown(analysed({"main.yml": FORCE}))
     assert len(items) == 1
     assert repair is not None
@@ -385,8 +385,8 @@ userdata: {home: [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785]}
 states:
   - GO: {template: MoveToJointPositionsState, positions: home}
 """
-    found = [(each.code, each.help) for each in analysed({"main.yml": text}).report
-             if each.severity.value != "info"]  # fmt: skip
+    found = [(item.code, item.help) for item in analysed({"main.yml": text}).report
+             if item.severity.value != "info"]  # fmt: skip
     help = "`positions` is an input key: write `remapping: {positions: home}`"
     assert ("SM003", help) in found
     assert all(code != "SM301" for code, _ in found)

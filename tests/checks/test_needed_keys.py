@@ -13,9 +13,9 @@ Row = tuple[str, str, str]
 
 def reported(files: dict[str, str]) -> list[Row]:
     return [
-        (each.code, each.span.text, each.help or "")
-        for each in analysed(files).report
-        if each.code != "SM207"
+        (item.code, item.span.text, item.help or "")
+        for item in analysed(files).report
+        if item.code != "SM207"
     ]
 
 
@@ -112,7 +112,7 @@ def test_an_unknown_key_and_the_only_one_without_a_use(old: str, new: str, row: 
     assert reported({**MEASURE, "cell/measure.py": text.replace(old, new)}) == [row]
     both = text.replace(old, f"{new} 0\n        {old}" if "=" in old else f"{old}, {new}")
     changed = reported({**MEASURE, "cell/measure.py": both})
-    assert [each[:2] for each in changed] == [row[:2]]
+    assert [item[:2] for item in changed] == [row[:2]]
     assert changed[0][2] != row[2]
 
 

@@ -31,7 +31,7 @@ def found(valid: str, invalid: str, *pairs: tuple[str, str]) -> list[tuple[str, 
     for old, new in pairs:
         assert old in text
         text = text.replace(old, new)
-    return [each for each in reported({"main.yml": text}) if each[0] in ("SM201", "SM203")]
+    return [item for item in reported({"main.yml": text}) if item[0] in ("SM201", "SM203")]
 
 
 @pytest.mark.parametrize(("valid", "invalid"), [("CHARGE", "empty"), ("empty", "CHARGE")])
@@ -57,7 +57,7 @@ def test_states_with_one_name_are_not_judged() -> None:
         "  - WATCH: {template: ScriptedState, outcomes: [valid], transitions: {valid: empty}}\n"
     )
     text = MAIN.replace("GOOD", "CHARGE").replace("LOW", "empty")
-    codes = {each[0] for each in reported({"main.yml": text + second})}
+    codes = {item[0] for item in reported({"main.yml": text + second})}
     assert "SM106" in codes
     assert "SM203" not in codes
 
@@ -92,7 +92,7 @@ states:
 )
 def test_a_rule_of_a_concurrence(variable: str, expected: int) -> None:
     text = BOTH.replace("topic: battery", f"topic: battery\n            {variable}")
-    findings = [each for each in reported({"main.yml": text}) if each[0] == "SM203"]
+    findings = [item for item in reported({"main.yml": text}) if item[0] == "SM203"]
     help = "add `timeout: 1.5` or `msg_cb: ...` to `WAIT`, or use another of its outcomes here"
     assert findings == [("SM203", "WAIT", help)] * expected
 
@@ -124,4 +124,4 @@ def test_an_interface_of_the_user() -> None:
 )
 def test_needs_of_something_else(needs: str, mark: str) -> None:
     files = {"main.yml": SCRIPT, "templates/Weigh.yml": WEIGH.replace("NEEDS", needs)}
-    assert [each[:2] for each in reported(files) if each[0] == "SM004"] == [("SM004", mark)]
+    assert [item[:2] for item in reported(files) if item[0] == "SM004"] == [("SM004", mark)]

@@ -110,9 +110,9 @@ def findings(files: dict[str, str] | str) -> list[tuple[str, str, str]]:
     """Code, marked text and help of each finding above an info."""
     files = {"main.yml": files} if isinstance(files, str) else files
     return [
-        (each.code, f"{each.span.line} {each.span.text}", each.help or "")
-        for each in analysed(files).report
-        if each.severity.value != "info"
+        (item.code, f"{item.span.line} {item.span.text}", item.help or "")
+        for item in analysed(files).report
+        if item.severity.value != "info"
     ]
 
 
@@ -149,9 +149,9 @@ def test_a_list_whose_items_do_not_fit_either() -> None:
 )
 def test_a_condition_that_is_always_true(result: str, help: str | None) -> None:
     found = findings(CONDITION.replace("RESULT", result))
-    found = [each for each in found if each[0] == "SM318"]
+    found = [item for item in found if item[0] == "SM318"]
     assert len(found) == (help is not None)
-    assert all(each[2].startswith(help or "") for each in found)
+    assert all(item[2].startswith(help or "") for item in found)
 
 
 @pytest.mark.parametrize(
@@ -172,7 +172,9 @@ def test_a_function_with_an_interface_returns_an_outcome() -> None:
     head = "import smach\n\n\n@smach.cb_interface(input_keys=['a', 'b'], output_keys=['total'],"
     code = head + " outcomes=['succeeded'])\n" + SUMS["sums.py"]
     code = code.replace("RETURN", "return 'succeeded'")
-    assert [each for each in findings({**SUMS, "sums.py": code}) if each[0] == "SM318"] == []
+    assert [
+        finding for finding in findings({**SUMS, "sums.py": code}) if finding[0] == "SM318"
+    ] == []
 
 
 def test_a_best_effort_branch_with_one_outcome() -> None:
@@ -234,7 +236,7 @@ def test_a_key_is_added_to_the_interface_and_to_the_class() -> None:
     help = "add `count` to the `output_keys` of the interface `Count` and of `__init__`"
     assert of_class("userdata.count += 1") == [("SM308", "12 count", help)]
     listed = ("input_keys=['count'])", "input_keys=['count'], output_keys=['count'])")
-    found = [each for each in of_class("userdata.count += 1", listed) if each[0] == "SM308"]
+    found = [item for item in of_class("userdata.count += 1", listed) if item[0] == "SM308"]
     assert [help for _, _, help in found] == [
         "add `count` to the `output_keys` of the interface `Count`"
     ]
@@ -242,7 +244,7 @@ def test_a_key_is_added_to_the_interface_and_to_the_class() -> None:
 
 def test_the_userdata_has_no_methods_of_a_dictionary() -> None:
     files = {**COUNT, "counter.py": COUNT["counter.py"].replace("CODE", "userdata.get('count')")}
-    effects = [each.finding.effect for each in analysed(files).report if each.code == "SM310"]
+    effects = [item.finding.effect for item in analysed(files).report if item.code == "SM310"]
     assert effects == ["the userdata has no method `get`: AttributeError"]
 
 

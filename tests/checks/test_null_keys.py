@@ -58,7 +58,7 @@ def test_a_key_that_is_always_null(preset: str, help: str) -> None:
     ],
 )  # fmt: skip
 def test_a_key_that_can_have_a_value(preset: str, code: str, out: str, old: str, new: str) -> None:
-    assert [each for each in found(preset, code, out, old, new) if each[0] == "SM311"] == []
+    assert [item for item in found(preset, code, out, old, new) if item[0] == "SM311"] == []
 
 
 INSIDE = """\
@@ -101,4 +101,4 @@ states:
 def test_a_key_of_a_container_around(first: str, expected: list[tuple[str, str, str]]) -> None:
     files = {"main.yml": INSIDE.replace("FIRST", first),
              "templates/Lift.yml": LIFT.replace("OUT", "mass")}  # fmt: skip
-    assert [each for each in reported(files) if each[0] == "SM311"] == expected
+    assert [item for item in reported(files) if item[0] == "SM311"] == expected

@@ -92,7 +92,7 @@ states:
 )  # fmt: skip
 def test_an_inverted_writes(writes: str, found: list[Row]) -> None:
     files = {"main.yml": USE, "templates/Detect.yml": TYPE.replace("WRITES", writes)}
-    assert [each for each in reported(files) if each[0] == "SM004"] == found
+    assert [item for item in reported(files) if item[0] == "SM004"] == found
 
 
 def project(text: str) -> tuple[Project | None, Report]:
@@ -103,14 +103,14 @@ def project(text: str) -> tuple[Project | None, Report]:
 def test_a_misspelt_setting_has_its_value() -> None:
     found, report = project('script = ["lib"]\n')
     assert found is not None
-    assert [str(each) for each in found.scripts] == ["lib"]
+    assert [str(script) for script in found.scripts] == ["lib"]
     assert [item.finding.help for item in report] == ["did you mean `scripts`?"]
 
 
 def test_a_misspelt_setting_beside_the_right_one() -> None:
     found, report = project('script = ["lib"]\nscripts = ["parts"]\n')
     assert found is not None
-    assert [str(each) for each in found.scripts] == ["parts"]
+    assert [str(script) for script in found.scripts] == ["parts"]
     assert len(report) == 1
 
 
@@ -156,7 +156,7 @@ def test_a_param_that_a_call_does_not_give(params: str, found: list[Row]) -> Non
 def test_a_misspelt_look_up_in_a_sub_script_stays_there() -> None:
     move = MOVE.replace("[[limb]]", "[[lmib]]")
     files = {"main.yml": CALLS.replace("PARAMS", "{limb: right, speed: 0.3}"), "move_arm.yml": move}
-    assert {each[:2] for each in reported(files)} == {("SM015", "lmib")}
+    assert {item[:2] for item in reported(files)} == {("SM015", "lmib")}
 
 
 TRAY = """\
@@ -191,6 +191,6 @@ NO_WAY = "`EACH` has no other way to end with `tray_empty`"
 )  # fmt: skip
 def test_the_outcome_after_the_last_item(fields: str, found: list[Row]) -> None:
     assert [
-        each for each in printed({"main.yml": TRAY.replace("FIELDS", fields)})
-        if each[0] not in ("SM208", "SM209")
+        item for item in printed({"main.yml": TRAY.replace("FIELDS", fields)})
+        if item[0] not in ("SM208", "SM209")
     ] == found  # fmt: skip

@@ -248,7 +248,7 @@ def test_a_branch_that_waits_without_a_limit(join: str, rules: str, found: list[
     text = SAFELY.replace("JOIN", join).replace("RULES", rules)
     codes = ("SM207", "SM402", "SM407")
     files = {"main.yml": text, "templates/Curtain.yml": CURTAIN}
-    assert [each for each in reported(files) if each[0] in codes] == found
+    assert [item for item in reported(files) if item[0] in codes] == found
 
 
 UNITS = """\
@@ -278,7 +278,7 @@ states:
     ],
 )  # fmt: skip
 def test_two_units(unit: str, help: str | None) -> None:
-    found = [each[2] for each in reported({"main.yml": UNITS.replace("UNIT", unit)})]
+    found = [item[2] for item in reported({"main.yml": UNITS.replace("UNIT", unit)})]
     assert found == ([help] if help else [])
 
 
@@ -343,6 +343,6 @@ states:
 def test_a_counter_without_its_output_is_one_finding() -> None:
     assert analysed({"main.yml": COUNTED}).report == []
     text = COUNTED.replace("      output_keys: [made]\n", "")
-    assert [each.code for each in analysed({"main.yml": text}).report] == ["SM308"]
+    assert [item.code for item in analysed({"main.yml": text}).report] == ["SM308"]
     text = COUNTED.replace("transitions: {done: COUNT", "transitions: {done: ALL")
-    assert [each.code for each in analysed({"main.yml": text}).report] == ["SM201"]
+    assert [item.code for item in analysed({"main.yml": text}).report] == ["SM201"]

@@ -45,8 +45,8 @@ def reported(steps: str, base: str = "PyBulletBase", **targets: str) -> list[tup
         inner = ", ".join(f"{end}: {target}" for end, target in ends.items() if end not in gone)
         text += f"  - S{number}: {{{STEPS[name]}, transitions: {{{inner}}}}}\n"
     report = analyse(Source("main.yml", text), memory_library({}, BUILT_IN), []).report
-    assert not [each for each in report if each.code < "SM1"]
-    return [(str(each.finding.node), each.span.text) for each in report if each.code == "SM516"]
+    assert not [item for item in report if item.code < "SM1"]
+    return [(str(item.finding.node), item.span.text) for item in report if item.code == "SM516"]
 
 
 @pytest.mark.parametrize("steps", ["open to open check", "open to open to wait check"])
@@ -138,4 +138,4 @@ BESIDE = """\
 def test_a_branch_beside_the_check(limb: str, expected: list[str]) -> None:
     text = HEAD + BESIDE.replace("LIMB", limb)
     report = analyse(Source("main.yml", text), memory_library({}, BUILT_IN), []).report
-    assert [each.code for each in report if each.code == "SM516"] == expected
+    assert [item.code for item in report if item.code == "SM516"] == expected

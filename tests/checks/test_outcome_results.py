@@ -73,9 +73,9 @@ def findings(answers: str, main: str = MAIN) -> list[tuple[str, str, str]]:
         **PACKAGE,
     }
     return [
-        (each.code, f"{each.span.source.name}:{each.span.line} {each.span.text}", each.help or "")
-        for each in analysed(files).report
-        if each.severity.value != "info"
+        (item.code, f"{item.span.source.name}:{item.span.line} {item.span.text}", item.help or "")
+        for item in analysed(files).report
+        if item.severity.value != "info"
     ]
 
 
@@ -139,7 +139,7 @@ def test_truth_values_are_one_fault() -> None:
 def test_callbacks_that_are_right_or_cannot_be_judged(old: str, new: str) -> None:
     assert old in ANSWERS
     found = findings(ANSWERS.replace(old, new))
-    assert [each for each in found if each[0] in ("SM512", "SM317", "SM318")] == []
+    assert [item for item in found if item[0] in ("SM512", "SM317", "SM318")] == []
 
 
 def test_constants_in_the_help_for_a_lambda() -> None:

@@ -138,7 +138,7 @@ def test_a_state_with_two_transitions_to_its_wrong_name() -> None:
     assert [(item.code, item.span.text, item.help) for item in found] == [
         ("SM101", "SPEAK", "did you mean `SPAEK`?")
     ]
-    assert [each.span.text for each in found[0].related] == ["SPEAK"]
+    assert [one.span.text for one in found[0].related] == ["SPEAK"]
     items, repair = shown(analysed({"main.yml": script}))
     assert len(items) == 1
     assert repair is not None

@@ -94,7 +94,7 @@ def test_the_code_is_compared_with_the_lists_of_the_script(
 ) -> None:
     assert old in template
     found = findings(template.replace(old, new) if old else template)
-    assert [each for each in found if each[0] != "SM301"] == expected
+    assert [item for item in found if item[0] != "SM301"] == expected
 
 
 @pytest.mark.parametrize(

@@ -78,7 +78,7 @@ def test_each_property_is_reported(tmp_path: Path) -> None:
     """Two properties at one place differ in their arguments."""
     states = STATES.replace("lost: aborted", "lost: LET_GO")
     found = findings(tmp_path, "  - before: {CARRY: LET_GO, PLACE: LET_GO}\n", states)
-    assert [each.partition(" |")[0] for each in found] == [
+    assert [item.partition(" |")[0] for item in found] == [
         "SM701 `CARRY` is entered before `LET_GO`",
         "SM701 `PLACE` is entered before `LET_GO`",
     ]
@@ -104,7 +104,7 @@ def test_the_help_of_a_finding_replays_it(
     given = f"  - before: {{'{second}:done': '{first}:done'}}\n"
     assert len(findings(tmp_path, given, BRANCHES)) == 1
     script = tmp_path / "main.yml"
-    (item,) = [each for each in smachac.check(script) if each.code == "SM701"]
+    (item,) = [one for one in smachac.check(script) if one.code == "SM701"]
     command = re.search(r"write `(\{.*\})` into .* --schedule (\S+)`$", item.help or "")
     assert command is not None
     scenario = tmp_path / "fails.yml"
@@ -113,7 +113,7 @@ def test_the_help_of_a_finding_replays_it(
     options = ["--mock", str(scenario), "--schedule", command[2], "--trace", str(trace)]
     assert main(["run", str(script), *options]) == 0
     events = [json.loads(line) for line in trace.read_text("utf-8").splitlines()]
-    ends = [each["path"] for each in events if each["event"] == "exit"]
+    ends = [event["path"] for event in events if event["event"] == "exit"]
     assert ends[:2] == [f"sm/BOTH/{second}", f"sm/BOTH/{first}"]
     capsys.readouterr()
     assert main(["explain", str(script), "--properties", "--scenario", "1"]) == 0
@@ -136,9 +136,9 @@ def test_a_counterexample_is_a_code_flow(
     findings(tmp_path, "  - before: {PLACE: LET_GO}\n")
     main(["check", str(tmp_path / "main.yml"), "--format", "sarif"])
     (run,) = json.loads(capsys.readouterr().out)["runs"]
-    (result,) = [each for each in run["results"] if each["ruleId"] == "SM701"]
+    (result,) = [item for item in run["results"] if item["ruleId"] == "SM701"]
     (flow,) = result["codeFlows"][0]["threadFlows"]
-    texts = [each["location"]["message"]["text"] for each in flow["locations"]]
+    texts = [item["location"]["message"]["text"] for item in flow["locations"]]
     assert texts == ["PICK -(done)->", "CARRY -(done)->", "PLACE"]
 
 
@@ -147,7 +147,7 @@ def test_explain_lists_the_properties(tmp_path: Path, capsys: pytest.CaptureFixt
     script = str(tmp_path / "main.yml")
     assert main(["explain", script, "--properties", "--format", "json"]) == 0
     data = json.loads(capsys.readouterr().out)["properties"]
-    assert [(each["name"], each["verdict"]) for each in data] == [
+    assert [(item["name"], item["verdict"]) for item in data] == [
         ("a", "holds"),
         ("`PICK` at most 1 time", "holds"),
     ]
@@ -209,7 +209,7 @@ def test_the_transition_of_a_state_with_a_time_limit(wrong: str) -> None:
     steps = f"{{done: STOP, {wrong}: HOME, {right}: STOP, preempted: STOP}}"
     text = TURN.replace("{done: STOP, slipped: HOME}", steps)
     text = text.replace("- LIFT:\n", "- LIFT:\n      timeout: 5s\n")
-    (item,) = [each for each in analysed({"main.yml": text}).report if each.code == "SM701"]
+    (item,) = [one for one in analysed({"main.yml": text}).report if one.code == "SM701"]
     (place,) = item.related
     assert place.message == "this transition leads to `HOME`, not to `STOP`"
     assert (item.help or "").startswith(f"write `{wrong}: STOP` in `LIFT`, or correct")
@@ -243,7 +243,7 @@ def test_an_answer_with_outcomes_has_a_turn_and_the_event_is_no_answer_to_itself
     right = UNLOCK.replace(
         "{succeeded: REPORT, preempted: BACK", "{succeeded: LOCK, preempted: BACK"
     )
-    assert not [each for each in analysed({"main.yml": right}).report if each.code == "SM701"]
+    assert not [item for item in analysed({"main.yml": right}).report if item.code == "SM701"]
 
 
 @pytest.mark.parametrize(
@@ -259,16 +259,16 @@ def test_a_time_as_the_limit_of_states(limit: str, help: str | None) -> None:
     """The property is not checked without its limit: a finding about it would be a second one."""
     text = TURN.replace("after: {LIFT: STOP}", f"whenever: {{CLOSE: LIFT, within: {limit}}}")
     report = analysed({"main.yml": text}).report
-    found = [(each.code, each.help) for each in report if each.span.text == limit]
+    found = [(item.code, item.help) for item in report if item.span.text == limit]
     assert found == ([("SM004", help)] if help else [])
-    assert not [each for each in report if each.code == "SM701"]
+    assert not [item for item in report if item.code == "SM701"]
 
 
 def test_the_guess_for_a_state_by_its_first_words() -> None:
     for name, guess in (("LIFT_ARM", True), ("RAISE_ARM", False)):
         text = TURN.replace("after: {LIFT: STOP}", f"before: {{HOME: {name}}}")
         (help,) = [
-            each.help for each in analysed({"main.yml": text}).report if each.code == "SM703"
+            item.help for item in analysed({"main.yml": text}).report if item.code == "SM703"
         ]
         assert ((help or "") == "did you mean `LIFT`?") == guess
 

@@ -27,8 +27,8 @@ states:
 
 def found(script: str) -> list[tuple[str, str, str | None]]:
     report = analysed({"main.yml": script}).report
-    return [(each.code, each.span.text, each.help) for each in report
-            if each.code in ("SM405", "SM301", "SM306")]  # fmt: skip
+    return [(item.code, item.span.text, item.help) for item in report
+            if item.code in ("SM405", "SM301", "SM306")]  # fmt: skip
 
 
 def test_the_key_of_the_other_branch() -> None:

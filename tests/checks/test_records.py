@@ -174,9 +174,9 @@ def test_a_record_in_a_class_is_a_dictionary(code: str, help: str) -> None:
     """
     files = {"main.yml": script, "templates/Pick.yml": interface}
     report = analysed({**files, "robot.py": CLASS.format(code=code)}).report
-    found = [each.help or "" for each in report if each.code == "SM311"]
+    found = [item.help or "" for item in report if item.code == "SM311"]
     assert len(found) == bool(help)
-    assert all(each.startswith(help) for each in found)
+    assert all(item.startswith(help) for item in found)
 
 
 PART = """
@@ -207,10 +207,10 @@ states:
 )
 def test_a_part_of_a_record_is_named_with_its_type(value: str, message: str, help: str) -> None:
     report = analysed({"main.yml": PART.format(value=value)}).report
-    found = [each for each in report if each.code == "SM304"]
+    found = [item for item in report if item.code == "SM304"]
     assert len(found) == bool(message)
-    assert all(each.finding.message.startswith(message) for each in found)
-    assert all(help in (each.help or "") for each in found)
+    assert all(item.finding.message.startswith(message) for item in found)
+    assert all(help in (item.help or "") for item in found)
 
 
 SCREWS = """
@@ -235,7 +235,7 @@ states:
 def test_a_field_of_a_record_in_another_unit(unit: str) -> None:
     """Only the field is named, and a loop provides its items."""
     report = analysed({"main.yml": SCREWS.replace("UNIT", unit)}).report
-    messages = [each.finding.message for each in report if each.code == "SM504"]
+    messages = [item.finding.message for item in report if item.code == "SM504"]
     message = "`torque` of `screw` is in `N*m` in the type `Screw`, but `DRIVE` reads it in `N*mm`"
     assert messages == ([message] if unit == "N*mm" else [])
 
@@ -265,5 +265,5 @@ states:
   - OPEN: {template: Open, transitions: {open: done}}
 """
     files = {"main.yml": main, "templates/Open.yml": interface, "lab.py": code}
-    found = [(each.code, each.span.text, each.help) for each in analysed(files).report]
+    found = [(item.code, item.span.text, item.help) for item in analysed(files).report]
     assert found == [("SM311", "userdata.entry.drawer", 'write `userdata.entry["drawer"]`')]

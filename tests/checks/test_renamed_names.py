@@ -43,4 +43,4 @@ def test_the_opposite_is_no_other_name() -> None:
 
 def test_two_names_that_have_changed() -> None:
     text = INTERFACE.replace("found:", "visible:").replace("lost:", "vanished:")
-    assert all("in place of" not in (each.help or "") for each in findings(interface=text))
+    assert all("in place of" not in (finding.help or "") for finding in findings(interface=text))

@@ -81,7 +81,7 @@ states:
 
 def test_an_outcome_whose_rule_is_lost() -> None:
     found = reported({"main.yml": MONITOR.replace("WATCHED", "invalid, valid")})
-    ((code, text, help),) = [each for each in found if each[0] != "SM408"]
+    ((code, text, help),) = [item for item in found if item[0] != "SM408"]
     assert (code, text) == ("SM203", "unsafe")
     assert str(help).startswith("add a rule for `unsafe`")
 
@@ -108,7 +108,7 @@ LATCH_TYPE = "name: Latch\nvariables: {closed: bool}\noutcomes: {succeeded: {}, 
 
 def test_an_event_is_no_state_after_a_failure() -> None:
     files = {"main.yml": LATCH, "templates/Latch.yml": LATCH_TYPE}
-    ((_, place, help),) = [each for each in reported(files) if each[0] == "SM703"]
+    ((_, place, help),) = [item for item in reported(files) if item[0] == "SM703"]
     assert place == "DETACH"
     assert "DETACH_ABORT" not in str(help)
 
@@ -130,7 +130,7 @@ states:
 @pytest.mark.parametrize("field", ["charge_percent", "level", "percent", "prcentage"])
 def test_a_field_with_a_word_of_the_same_meaning(field: str) -> None:
     found = reported({"main.yml": BATTERY.replace("FIELD", field)})
-    assert [each for each in found if each[0] == "SM512"] == [
+    assert [item for item in found if item[0] == "SM512"] == [
         ("SM512", field, "did you mean `percentage`?")
     ]
 
@@ -159,7 +159,7 @@ LOOK_TYPE = "name: Look\noutput_keys: {score: float, place: Pose}\noutcomes: {se
 )  # fmt: skip
 def test_the_output_that_is_not_remapped(remapping: str, help: str) -> None:
     files = {"main.yml": SORT.replace("REMAPPING", remapping), "templates/Look.yml": LOOK_TYPE}
-    found = [each for each in reported(files) if each[0] == "SM301"]
+    found = [item for item in reported(files) if item[0] == "SM301"]
     assert found == [("SM301", "part_score", help)]
 
 

@@ -62,8 +62,8 @@ def test_one_slip_is_one_finding(
 ) -> None:
     assert old in script
     report = analysed({"main.yml": script.replace(old, new, 1)}).report
-    found = [(each.code, each.span.text, each.help) for each in report]
-    found = [each for each in found if each[0] != "SM207"]  # a server without a limit
+    found = [(item.code, item.span.text, item.help) for item in report]
+    found = [item for item in found if item[0] != "SM207"]  # a server without a limit
     assert found == ([(code, marked, help)] if code else [])
 
 
@@ -82,7 +82,7 @@ QOS = WATCH.replace("topic: battery", "topic: battery\n      qos: QOS")
 )
 def test_a_fault_of_a_policy_is_at_its_value(qos: str, marked: str, help: str) -> None:
     report = analysed({"main.yml": QOS.replace("QOS", qos)}).report
-    found = [(each.span.text, each.help) for each in report if each.code == "SM004"]
+    found = [(item.span.text, item.help) for item in report if item.code == "SM004"]
     assert found == [(marked, help)]
 
 
@@ -110,7 +110,7 @@ states:
 )
 def test_an_outcome_is_guessed_as_preempted_only_if_it_is_near(word: str, help: str) -> None:
     report = analysed({"main.yml": STOPPED_OR_NOT.format(word=word)}).report
-    helps = {each.code: each.help for each in report if each.code in ("SM102", "SM318")}
+    helps = {item.code: item.help for item in report if item.code in ("SM102", "SM318")}
     assert helps["SM318"] == help
     near = word != "rejected"
     assert ("did you mean `preempted`" in (helps["SM102"] or "")) == near

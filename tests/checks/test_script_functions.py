@@ -54,9 +54,9 @@ def findings(rules: str, main: str = MAIN, base: str = BASE) -> list[tuple[str, 
     }
     found = analysed(files).report
     return [
-        (each.code, f"{each.span.source.name}:{each.span.line} {each.span.text}", each.help or "")
-        for each in found
-        if each.severity.value != "info"
+        (item.code, f"{item.span.source.name}:{item.span.line} {item.span.text}", item.help or "")
+        for item in found
+        if item.severity.value != "info"
     ]
 
 
@@ -118,7 +118,7 @@ def test_a_function_for_two_states_with_different_keys() -> None:
         .replace("userdata: {", "userdata: {other: 1, ")
     )
     rules = RULES.replace("userdata.parts, key", "[userdata.parts, userdata.other], key")
-    assert "SM310" not in [each[0] for each in findings(rules, main)]
+    assert "SM310" not in [finding[0] for finding in findings(rules, main)]
 
 
 def test_a_function_in_the_template_itself() -> None:
@@ -196,4 +196,4 @@ def test_a_callback_that_formats_a_number(code: str, found: list[str]) -> None:
         "templates/Weigh.yml": "input_keys: {mass: float}\noutcomes: {weighed: {}}\n",
     }
     report = analysed(files).report
-    assert [each.code for each in report if each.severity.value == "error"] == found
+    assert [item.code for item in report if item.severity.value == "error"] == found

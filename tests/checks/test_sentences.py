@@ -100,7 +100,7 @@ GRIPPER = """
     ],
 )  # fmt: skip
 def test_the_cause_is_at_its_token(states: str, code: str, token: str, words: str) -> None:
-    (item,) = (each for each in found(states) if each.code == code)
+    (item,) = (one for one in found(states) if one.code == code)
     assert item.span.text == token
     assert words in f"{item.message} {item.help}"
 
@@ -147,6 +147,6 @@ def test_a_wrong_project_file_is_marked_at_the_character(
     (tmp_path / "smachac.toml").write_text(text)
     (tmp_path / "main.yml").write_text("name: sm\noutcomes: [done]\nstates: []\n")
     report = analyse_script(tmp_path / "main.yml").report
-    (item,) = (each for each in report if each.code == "SM007")
+    (item,) = (one for one in report if one.code == "SM007")
     assert (item.span.line, item.span.text) == (line, token)
     assert help in (item.help or "")

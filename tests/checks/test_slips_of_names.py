@@ -54,7 +54,7 @@ def test_transitions_of_a_branch_are_one_finding() -> None:
         "remove them: the rules in `outcome_map` decide how `BOTH` ends; for an order put the"
         " states into a Sequence in one branch"
     )
-    assert [each for each in found if each[0] == "SM101"] == [("SM101", "done", help)]
+    assert [item for item in found if item[0] == "SM101"] == [("SM101", "done", help)]
 
 
 def test_the_only_outcome_of_all_states_of_a_sequence() -> None:
@@ -73,7 +73,7 @@ states:
 """
     found = reported({"main.yml": text})
     help = "write `ok`, with which each of its states can end"
-    assert [each for each in found if each[0] == "SM201"] == [("SM201", "finished", help)]
+    assert [item for item in found if item[0] == "SM201"] == [("SM201", "finished", help)]
 
 
 INTERFACE = """\
@@ -109,9 +109,9 @@ states:
   - MOVE: {template: Move, transitions: {moved: done, blocked: stuck}}
 """
     found = reported({"main.yml": main, "templates/Move.yml": interface})
-    slips = [each for each in found if each[0] in ("SM003", "SM004")]
-    assert [(each[1], each[2]) for each in slips] == [(marked, help)]
-    assert {each[0] for each in found} <= {"SM003", "SM004", "SM301", "SM005"}
+    slips = [item for item in found if item[0] in ("SM003", "SM004")]
+    assert [(item[1], item[2]) for item in slips] == [(marked, help)]
+    assert {item[0] for item in found} <= {"SM003", "SM004", "SM301", "SM005"}
 
 
 def test_a_param_that_the_sub_script_has_under_another_name() -> None:
@@ -151,7 +151,7 @@ states:
     assert (code, place) == ("SM301", "bin")
     assert help.startswith("did you mean `light_bin`?")
     other = reported({"main.yml": text.replace(", failed", "").replace("light_bin", "speed")})
-    assert {each[0] for each in other} == {"SM301", "SM306"}
+    assert {item[0] for item in other} == {"SM301", "SM306"}
 
 
 WATCHED = """\
@@ -181,13 +181,13 @@ WATCH = "outcomes: {overload: {failure: true}, preempted: {}}\nblocking: true\n"
 )
 def test_a_rule_for_a_branch_that_nothing_preempts(rules: str, expected: list[str]) -> None:
     files = {"main.yml": WATCHED.replace("RULES", rules), "templates/Watch.yml": WATCH}
-    assert [each[0] for each in reported(files) if each[0] == "SM407"] == expected
+    assert [item[0] for item in reported(files) if item[0] == "SM407"] == expected
 
 
 def test_a_wait_of_a_given_time_ends_by_itself() -> None:
     main = WATCHED.replace("RULES", "cut: {MILL: finished}, fault: {WATCH: succeeded}")
     main = main.replace("{template: Watch}", "{template: SleepState, time: 2}")
-    codes = [each[0] for each in reported({"main.yml": main})]
+    codes = [item[0] for item in reported({"main.yml": main})]
     assert "SM402" in codes
     assert "SM407" not in codes
 
@@ -240,7 +240,7 @@ states:
       remapping: {a: x, b: y}
       transitions: {ok: done}
 """
-    found = [each for each in reported({"main.yml": text}) if each[0] == "SM302"]
+    found = [item for item in reported({"main.yml": text}) if item[0] == "SM302"]
     help = 'the key of the state comes first: write `{x: a, "y": b}`'
     assert found == [("SM302", "a", help)]
 
@@ -248,7 +248,7 @@ states:
 def test_a_failure_of_another_name_in_a_rule() -> None:
     main = PATROL.replace(RULE, "outcome_map: {ready: {LIGHT: done, DRIVE: failed}}")
     main = main.replace("lost", "aborted")
-    found = [each for each in reported({"main.yml": main}) if each[0] == "SM403"]
+    found = [item for item in reported({"main.yml": main}) if item[0] == "SM403"]
     assert found == [("SM403", "failed", "did you mean `aborted`?")]
 
 
@@ -291,7 +291,7 @@ states:
 """
     inner = "- INNER: {template: SleepState, time: [params, time]}\n"
     files = {"main.yml": main, "part.yml": part, "inner.yml": inner}
-    found = [each for each in reported(files) if each[0] == "SM015"]
+    found = [item for item in reported(files) if item[0] == "SM015"]
     assert found == [("SM015", "time", "did you mean `times`?")]
 
 
@@ -365,8 +365,8 @@ states:
     ],
 )
 def test_an_output_that_nothing_reads(key: str, help: str | None) -> None:
-    found = [each for each in reported({"main.yml": LOOK.replace("KEY", key)})
-             if each[0] == "SM301"]  # fmt: skip
+    found = [item for item in reported({"main.yml": LOOK.replace("KEY", key)})
+             if item[0] == "SM301"]  # fmt: skip
     assert len(found) == 1
     assert (found[0][2] == help) is (help is not None)
 
@@ -393,6 +393,6 @@ states:
             callbacks: {total: 'lambda ud: ud.total + ud.one'}
             transitions: {succeeded: ok}
 """
-    found = [each for each in reported({"main.yml": main}) if each[0] in ("SM301", "SM303")]
+    found = [item for item in reported({"main.yml": main}) if item[0] in ("SM301", "SM303")]
     assert len(found) == 1
     assert "`input_keys: [one, total]` in `EACH`" in (found[0][2] or "")

@@ -121,8 +121,8 @@ def changed(text: str, *changes: tuple[str, str]) -> str:
 def found(text: str) -> list[Diagnostic]:
     """The findings of SM319 in a script without an error."""
     report = analyse(Source("main.yml", text), memory_library({}, BUILT_IN), []).report
-    assert not [each.message for each in report if each.severity is Severity.ERROR]
-    return [each for each in report if each.code == "SM319"]
+    assert not [item.message for item in report if item.severity is Severity.ERROR]
+    return [item for item in report if item.code == "SM319"]
 
 
 AFTER = "      transitions: {held: done"
@@ -236,7 +236,7 @@ def test_a_counter_is_still_at_its_limit(changes: list[tuple[str, str]]) -> None
 def test_the_places_the_path_and_the_help() -> None:
     (finding,) = found(TRIES)
     assert finding.message.startswith("nothing sets `tries` back to 0 when")
-    assert [each.span.text for each in finding.related] == ["COUNT", "AGAIN"]
+    assert [item.span.text for item in finding.related] == ["COUNT", "AGAIN"]
     assert finding.finding.path_labels == (
         "AGAIN", "(enough)", "LOOK", "(seen)", "GRASP", "CLOSE", "(slipped)", "COUNT",
         "(succeeded)", "AGAIN",

@@ -54,9 +54,9 @@ def report(script: str, files: dict[str, str]) -> list[tuple[str, str, str | Non
     """The marked text, the message and the help of the findings of SM512."""
     found = analyse(Source("main.yml", script), memory_library(files, BUILT_IN), []).report
     return [
-        (each.span.text, each.finding.message, each.finding.help)
-        for each in found
-        if each.code == "SM512"
+        (item.span.text, item.finding.message, item.finding.help)
+        for item in found
+        if item.code == "SM512"
     ]
 
 

@@ -21,8 +21,8 @@ def analysed(script: str, **interfaces: str) -> tuple[Machine, list[str]]:
         f"templates/{name}.yml": f"name: {name}\n{text}" for name, text in interfaces.items()
     } | {f"templates/{name}.tpl.py": "" for name in interfaces}
     found = analyse(Source("main.yml", script), memory_library(files, BUILT_IN), [])
-    assert found.machine is not None, [each.message for each in found.report]
-    return found.machine, [each.code for each in found.report]
+    assert found.machine is not None, [item.message for item in found.report]
+    return found.machine, [item.code for item in found.report]
 
 
 CALLS = """
@@ -147,7 +147,7 @@ FRAME = LOOK % ", role: frame"
 def test_frames_of_a_user_s_type(base: str, load: str, look: str, codes: list[str]) -> None:
     lab = "kind: base\nsimulation: true\nvariables: {robot: {default: panda}}\n"
     _, own = analysed(LOADS.format(base=base), Load=load, Look=look, Lab=lab)
-    assert [each for each in own if each == "SM505"] == codes
+    assert [item for item in own if item == "SM505"] == codes
 
 
 def test_a_stand_in_of_the_user_sets_the_keys_of_its_steps() -> None:

@@ -166,7 +166,7 @@ def test_a_loop_that_ends_early_and_succeeds(
                     to={"succeeded": "succeeded", "failed": "failed"})  # fmt: skip
     helps = [item.help for item in report(sm(loop)) if item.code == "SM210"]
     assert len(helps) == bool(help)
-    assert all(help is not None and help in (each or "") for each in helps)
+    assert all(help is not None and help in (help_ or "") for help_ in helps)
     answering = replace(loop, children=(leaf("A", outcomes="succeeded preempted"),))
     assert [item for item in report(sm(answering)) if item.code == "SM210"] == []
 

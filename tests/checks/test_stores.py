@@ -26,8 +26,8 @@ def dead(*states: str, head: str = "outcomes: [done]", **files: str) -> list[str
     text = f"name: sm\ntemplate: Base\n{head}\nstates:\n{listed}"
     library = memory_library({f"{name}.yml": each for name, each in files.items()}, BUILT_IN)
     report = analyse(Source("main.yml", text), library, []).report
-    assert not [each for each in report if each.severity is Severity.ERROR]
-    return [each.finding.message for each in report if each.code == "SM320"]
+    assert not [item for item in report if item.severity is Severity.ERROR]
+    return [item.finding.message for item in report if item.code == "SM320"]
 
 
 def test_a_store_that_the_next_state_overwrites() -> None:

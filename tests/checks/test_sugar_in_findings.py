@@ -112,7 +112,7 @@ def damaged(draw: random.Random) -> str:
 
 def words_of(item: Diagnostic) -> list[str]:
     finding = item.finding
-    related = [each.message for each in finding.related]
+    related = [one.message for one in finding.related]
     steps = [*finding.path_labels, *(step.node or "" for step in finding.path)]
     return [finding.message, finding.help or "", finding.node or "", *related, *steps,
             *finding.arguments]  # fmt: skip
@@ -128,7 +128,7 @@ def test_containers_made_of_sugar_are_not_named(start: int) -> None:
         text = damaged(random.Random(seed)) if seed else SCRIPT
         for item in analyse_script(Source("main.yml", text)).report:
             found += 1
-            named = [each for each in words_of(item) if INNER_NAME.search(each)]
+            named = [one for one in words_of(item) if INNER_NAME.search(one)]
             assert named == [], (seed, item.code)
     assert found > 50
 
@@ -136,7 +136,7 @@ def test_containers_made_of_sugar_are_not_named(start: int) -> None:
 def test_a_witness_path_has_one_step_for_a_state_and_its_sugar() -> None:
     text = SCRIPT.replace("output_keys: [found]\n            timeout", "timeout")
     report = analyse_script(Source("main.yml", text)).report
-    (item,) = [each for each in report if each.code == "SM301" and each.finding.node == "sm/SHOW"]
+    (item,) = [one for one in report if one.code == "SM301" and one.finding.node == "sm/SHOW"]
     assert item.finding.path_labels == (
         *("DRIVE", "(succeeded)", "BOTH", "(succeeded)", "INNER", "(succeeded)", "SHOW"),
     )

@@ -57,7 +57,7 @@ def test_two_facts_that_have_changed_places(right: str, wrong: str) -> None:
     "force", ["{type: int, min: 500}", "{type: float, unit: N, max: 900}", "{type: Force}"]
 )
 def test_facts_in_their_places(force: str) -> None:
-    assert [each for each in grip(force) if each[0] == "SM004"] == []
+    assert [item for item in grip(force) if item[0] == "SM004"] == []
 
 
 DETECT = """\
@@ -282,7 +282,7 @@ def test_a_param_that_several_calls_lack(params: str, another: str) -> None:
     main = FEEDERS.replace("PARAMS\n", params).replace("ANOTHER", another)
     found = reported({"main.yml": main, "feed.yml": FEED, "feed2.yml": FEED})
     help = "add `speed: ...` to the `params` of `LEFT`, of a container around it, or of the script"
-    assert [each for each in found if each[0] == "SM015"] == [("SM015", "script: feed", help)]
+    assert [item for item in found if item[0] == "SM015"] == [("SM015", "script: feed", help)]
 
 
 def test_a_param_of_a_call_that_is_turned_round() -> None:

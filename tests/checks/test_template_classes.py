@@ -40,7 +40,7 @@ def findings(fields: str, **files: str) -> list[tuple[str, str, str]]:
     main = MAIN.replace("FIELDS", fields)
     texts = {name.replace("_", ".", 1).replace("_", "."): text for name, text in files.items()}
     project = {"main.yml": main} | {f"templates/{name}": text for name, text in texts.items()}
-    return [(each.code, each.span.text, each.help or "") for each in analysed(project).report]
+    return [(item.code, item.span.text, item.help or "") for item in analysed(project).report]
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,7 @@ def test_variables_are_the_parameters_of_the_constructor(
     fields: str, expected: list[tuple[str, str, str]]
 ) -> None:
     found = findings(fields, Open_tpl_py=TEMPLATE)
-    assert [each for each in found if each[0] != "SM104"] == expected
+    assert [item for item in found if item[0] != "SM104"] == expected
 
 
 def test_a_wrong_return_is_found() -> None:
@@ -77,7 +77,9 @@ def test_a_wrong_return_is_found() -> None:
 )
 def test_a_constructor_that_decides_nothing(code: str) -> None:
     code = code.replace("self.width = given", "self.width, self.speed = given")
-    assert [each for each in findings("force: 2,", Open_tpl_py=code) if each[0] != "SM003"] == []
+    assert [
+        finding for finding in findings("force: 2,", Open_tpl_py=code) if finding[0] != "SM003"
+    ] == []
 
 
 INTERFACE = 'outcomes: {done: {}}\nvariables: {VARIABLES}\ncode: {python: "Open.tpl.py"}\n'
@@ -110,7 +112,7 @@ def test_a_program_for_ros_2_passes_its_node(ros: Ros, expected: list[str]) -> N
     files = {"templates/Open.yml": interface, "cell.py": f"import smach\n\n\n{module}"}
     library = replace(memory_library(files, BUILT_IN), ros=ros)
     report = analyse(Source("main.yml", main), library, []).report
-    assert [each.code for each in report] == expected
+    assert [item.code for item in report] == expected
 
 
 def test_an_argument_that_the_constructor_does_not_accept() -> None:

@@ -166,13 +166,13 @@ def test_a_limit_of_the_tries_is_a_limit(
 
 def sleep(seconds: Any, to: dict[str, str] | None = None, name: str = "WAIT") -> Leaf:
     made = leaf(name, to or {}, outcomes="succeeded preempted", time=seconds)
-    variables = tuple(replace(each, role="duration") for each in made.variables)
+    variables = tuple(replace(variable, role="duration") for variable in made.variables)
     return replace(made, variables=variables)
 
 
 def limited(seconds: float, inner: Node) -> StateMachine:
     """A machine with a state under a time limit."""
-    names = [each.name for each in inner.outcomes]
+    names = [outcome.name for outcome in inner.outcomes]
     node = concurrence("WAIT", " ".join([*names, "timeout"]), inner, sleep(seconds, name="TIMER"),
                        default="timeout", join="any",
                        to=dict.fromkeys([*names, "timeout"], "done"))  # fmt: skip

@@ -52,8 +52,8 @@ def test_a_loop_without_a_wait(old: str, new: str, message: str) -> None:
     script = LOOP.replace(old, new).replace(
         "outcomes: [stopped]", "outcomes: [stopped]\nforever: true"
     )
-    found = [each for each in analysed({"main.yml": script}).report if each.code == "SM204"]
-    assert [each.message for each in found] == [message]
+    found = [item for item in analysed({"main.yml": script}).report if item.code == "SM204"]
+    assert [item.message for item in found] == [message]
 
 
 @pytest.mark.parametrize(
@@ -70,8 +70,8 @@ def test_a_rule_with_any_alone(default: str, help: str) -> None:
     if "other" in default:
         script = script.replace("outcomes: [safe]\n      d", "outcomes: [safe, other]\n      d")
         script = script.replace("{safe: safe}", "{safe: safe, other: safe}")
-    found = [each for each in analysed({"main.yml": script}).report if each.code == "SM403"]
-    assert [(each.message, each.help) for each in found] == [
+    found = [item for item in analysed({"main.yml": script}).report if item.code == "SM403"]
+    assert [(item.message, item.help) for item in found] == [
         ("the rule for `safe` has no conditions beside `any`, which stands for every outcome", help)
     ]
 
@@ -82,7 +82,7 @@ def test_a_name_that_is_a_boolean(name: str, entry: str) -> None:
         f'name: sm\ntemplate: Base\noutcomes: ["{name}"]\nstates:\n'
         f'  - A: {{template: ScriptedState, outcomes: ["{name}"]}}\n'
     )
-    (found,) = [each for each in analysed({"main.yml": script}).report if each.code == "SM105"]
+    (found,) = [item for item in analysed({"main.yml": script}).report if item.code == "SM105"]
     assert found.help == f"add {entry} to the `transitions` of `A` to show that this is intended"
 
 
@@ -107,5 +107,5 @@ states:
       remapping: {{ofset: above}}
       transitions: {{ok: ok}}
 """
-    (found,) = [each for each in analysed({"main.yml": script}).report if each.code == "SM302"]
+    (found,) = [item for item in analysed({"main.yml": script}).report if item.code == "SM302"]
     assert (found.effect, found.help) == (effect, "did you mean `offset`?")

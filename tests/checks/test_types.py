@@ -18,9 +18,9 @@ def found(text: str) -> list[Diagnostic]:
     """What the rules over types find in a machine; `; ` ends a line."""
     machine = with_state_types(parse_machine(text.replace("; ", "\n"), "main.smir"))
     robot = default_robot(machine.state_types[machine.base], LIBRARY)
-    for each in machine.variables:
-        if each.name == "robot":
-            robot = built_in_robot(str(each.value.data), LIBRARY)
+    for variable in machine.variables:
+        if variable.name == "robot":
+            robot = built_in_robot(str(variable.value.data), LIBRARY)
     report = check_machine(replace(machine, robot=robot))
     codes = ("SM304", "SM501", "SM502", "SM503", "SM504")
     return [item for item in report if item.code in codes]
@@ -102,7 +102,7 @@ def test_limits_are_those_of_the_simulated_arm() -> None:
     links = {link.get("name") for link in robot.iter("link")}
     assert links == panda.frames
     robots = [built_in_robot(name, LIBRARY) for name in BUILT_IN]
-    assert {len(limb) for each in robots if each is not None for limb in each.limbs} == {7}
+    assert {len(limb) for item in robots if item is not None for limb in item.limbs} == {7}
     assert None not in robots
 
 

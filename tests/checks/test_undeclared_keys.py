@@ -49,7 +49,7 @@ def reported(code: str, type_: str = '"list[str]"', preset: str = "") -> list[Di
         "templates/Detect.yml": INTERFACE.replace("TYPE", type_),
         "cell.py": CLASS.replace("CODE", body),
     }
-    return [each for each in analysed(files).report if each.code != "SM305"]
+    return [item for item in analysed(files).report if item.code != "SM305"]
 
 
 LOCAL = "in a local variable, and set `userdata.parts` once, before the return"
@@ -74,7 +74,7 @@ LOOP = "for name in userdata.order:\n    "
     ],
 )  # fmt: skip
 def test_a_read_of_an_output_key(code: str, type_: str, preset: str, help: str) -> None:
-    (item,) = [each for each in reported(code, type_, preset) if each.code == "SM310"]
+    (item,) = [one for one in reported(code, type_, preset) if one.code == "SM310"]
     assert item.message.endswith("reads `parts`, which is only an output key of its interface")
     assert item.help == help
 
@@ -103,7 +103,7 @@ states:
 def in_script(inputs: str, code: str) -> list[tuple[str, str, str]]:
     text = SCRIPT.replace("INPUTS", inputs).replace("CODE", code)
     report = analysed({"main.yml": text}).report
-    return [(each.code, each.span.text, each.help or "") for each in report if each.code != "SM305"]
+    return [(item.code, item.span.text, item.help or "") for item in report if item.code != "SM305"]
 
 
 def test_the_only_input_is_read_under_another_name() -> None:
@@ -171,7 +171,7 @@ def test_a_key_of_the_container_is_no_slip_of_another_one(
     """The code reads the similar key too: with the guess it would read one key twice."""
     text = COUNTED.replace("INPUTS", inputs).replace("CODE", code)
     report = analysed({"main.yml": text}).report
-    assert [each.help for each in report if each.code == "SM310"] == [help]
+    assert [item.help for item in report if item.code == "SM310"] == [help]
 
 
 @pytest.mark.parametrize(
@@ -185,6 +185,6 @@ def test_a_key_of_the_container_is_no_slip_of_another_one(
     ],
 )  # fmt: skip
 def test_a_class_reads_a_key_of_the_container(value: str, preset: str, help: str) -> None:
-    (found,) = [each for each in reported(f"userdata.parts = {value}", preset=preset)
-                if each.code == "SM310"]  # fmt: skip
+    (found,) = [item for item in reported(f"userdata.parts = {value}", preset=preset)
+                if item.code == "SM310"]  # fmt: skip
     assert found.help == help

@@ -54,8 +54,8 @@ states:
 def findings(lists: str, template: str) -> list[tuple[str, str, str]]:
     text = template.replace("LISTS", lists)
     report = analysed({"main.yml": MAIN, "templates/Weld.tpl.py": text}).report
-    return [(each.code, each.span.text, each.help or "") for each in report
-            if each.code in ("SM308", "SM310", "SM609")]  # fmt: skip
+    return [(item.code, item.span.text, item.help or "") for item in report
+            if item.code in ("SM308", "SM310", "SM609")]  # fmt: skip
 
 
 ADD = "add `{}` to the `{}` of `smach.State.__init__`"

@@ -89,7 +89,7 @@ def test_a_class_that_does_not_load_or_run_is_an_error(
 ) -> None:
     assert not errors(FILES)
     found = errors(FILES | {file: FILES[file].replace(old, new)})
-    assert [each[0] for each in found] == [code]
+    assert [item[0] for item in found] == [code]
 
 
 def test_only_the_program_needs_the_class(

@@ -75,8 +75,8 @@ def test_a_key_that_no_result_sets() -> None:
     ],
 )
 def test_a_key_that_is_set(more: str) -> None:
-    assert [each for each in found("ServiceState", SERVICE, "success", more)
-            if each[0] in ("SM301", "SM306")] == []  # fmt: skip
+    assert [item for item in found("ServiceState", SERVICE, "success", more)
+            if item[0] in ("SM301", "SM306")] == []  # fmt: skip
 
 
 def test_a_key_that_another_state_sets() -> None:

@@ -289,7 +289,7 @@ def test_many_missing_keys_take_no_longer_than_they_should() -> None:
     chain = [
         leaf(name, {"ok": to, "bad": name}, ins=f"k{name}", outs=f"k{to}") for name, to in steps
     ]
-    chain = [replace(each, writes=(("bad", (each.outputs[0].name,)),)) for each in chain]
+    chain = [replace(item, writes=(("bad", (item.outputs[0].name,)),)) for item in chain]
     assert len(found(root(*chain), "SM301")) == 2000
 
 

@@ -97,5 +97,5 @@ states:
 def test_a_loop_in_a_body_with_the_item_as_input(old: str, new: str, codes: list[str]) -> None:
     assert old in NESTED
     report = analysed({"main.yml": NESTED.replace(old, new)}).report
-    found = [each for each in report if each.code in ("SM303", "SM306")]
-    assert [each.code for each in found] == codes
+    found = [item for item in report if item.code in ("SM303", "SM306")]
+    assert [item.code for item in found] == codes

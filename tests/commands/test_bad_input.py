@@ -145,10 +145,10 @@ MORE_COMMANDS = [
 @pytest.mark.parametrize(
     ("command", "code"),
     [
-        *(pytest.param(*each, id=" ".join(each[0])) for each in COMMANDS),
+        *(pytest.param(*item, id=" ".join(item[0])) for item in COMMANDS),
         *(
-            pytest.param(*each, id=" ".join(each[0]), marks=pytest.mark.slow)
-            for each in MORE_COMMANDS
+            pytest.param(*item, id=" ".join(item[0]), marks=pytest.mark.slow)
+            for item in MORE_COMMANDS
         ),
     ],
 )

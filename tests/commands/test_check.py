@@ -112,7 +112,7 @@ def test_sub_scripts_are_read_once(
         parsed.append(source.name)
         return parse(source, report)
 
-    monkeypatch.setattr(files, "parse_mended", counted)
+    monkeypatch.setattr(files, "parse_with_recovery", counted)
     assert main(["check", "main.yml", "other.yml", "deep"]) == 1
     assert len(parsed) == len(set(parsed))
     assert {"pick.yml", "main.yml", "other.yml"} <= set(parsed)
@@ -125,7 +125,7 @@ def test_a_sub_script_alone_has_no_caller_to_blame(
     assert main(["check", "lone.yml", "--format", "json"]) == 1
     report = json.loads(capsys.readouterr().out)
     (item,) = report["diagnostics"]
-    places = {each["place"]["file"] for each in item["related"]}
+    places = {one["place"]["file"] for one in item["related"]}
     assert item["code"] == "SM201"
     assert places <= {"lone.yml"}
     write(folder, {"a.yml": "- A: {script: b}\n", "b.yml": "- B: {script: a}\n"})
@@ -173,9 +173,9 @@ def test_a_baseline_holds_no_firm_error(folder: Path, capsys: pytest.CaptureFixt
     told = capsys.readouterr().out
     assert told.endswith("; 1 error is not in it, because no program can be generated\n")
     known = json.loads((folder / "b.json").read_text())
-    assert "SM101" not in {each["code"] for each in known["findings"]}
+    assert "SM101" not in {item["code"] for item in known["findings"]}
     assert main(["check", "main.yml", "--baseline", "b.json"]) == 1
-    assert "SM101" in {each.split()[0] for each in lines(capsys.readouterr().out)}
+    assert "SM101" in {line.split()[0] for line in lines(capsys.readouterr().out)}
 
 
 def test_a_firm_error_in_a_baseline_is_reported(
@@ -187,7 +187,7 @@ def test_a_firm_error_in_a_baseline_is_reported(
     (folder / "b.json").write_text(baseline.render(report))
     assert main(["check", "main.yml", "--baseline", "b.json"]) == 1
     shown = capsys.readouterr().out
-    assert "SM101" in {each.split()[0] for each in lines(shown)}
+    assert "SM101" in {line.split()[0] for line in lines(shown)}
     assert "no longer found" not in shown
 
 

@@ -148,7 +148,7 @@ def test_findings(capsys: pytest.CaptureFixture[str]) -> None:
     assert diff("main.yml", "new.yml", "--format", "json") == 1
     (found,) = json.loads(capsys.readouterr().out)["scripts"]
     assert (found["before"], found["after"], found["equal"]) == ("main.yml", "new.yml", False)
-    assert [each["code"] for each in found["findings"]["added"]][:1] == ["SM101"]
+    assert [item["code"] for item in found["findings"]["added"]][:1] == ["SM101"]
     (change,) = found["changes"]
     assert change == {
         "change": "changed",
@@ -209,7 +209,7 @@ def test_a_page(capsys: pytest.CaptureFixture[str]) -> None:
     assert diff("main.yml", "new.yml", "--format", "html") == 1
     page = capsys.readouterr().out
     model = model_of(page)
-    nodes = {each["path"]: each for each in model["nodes"]}
+    nodes = {item["path"]: item for item in model["nodes"]}
     assert {path: each["change"] for path, each in nodes.items()} == {
         "sm": "same",
         "sm/PICK": "changed",
@@ -219,13 +219,13 @@ def test_a_page(capsys: pytest.CaptureFixture[str]) -> None:
     }
     for path, each in nodes.items():
         assert all(nodes[child]["parent"] == path for child in each["children"])
-    edges = {(each["source"], each["outcome"], str(each["target"])): each["change"]
-             for each in model["edges"]}  # fmt: skip
+    edges = {(item["source"], item["outcome"], str(item["target"])): item["change"]
+             for item in model["edges"]}  # fmt: skip
     assert edges["sm/PICK", "lost", "sm/PARK"] == "added"
     assert edges["sm/PICK", "lost", "{'outcome': 'lost'}"] == "removed"
     assert edges["sm/PICK", "done", "sm/PARK"] == "same"
     changes = model["differences"]["changes"]
-    assert all(each["path"] in nodes for each in changes)
+    assert all(change["path"] in nodes for change in changes)
     assert model["source"] == "new.yml"
     write("new.yml", SCRIPT.replace("1.0", "x"))
     assert diff("main.yml", "new.yml", "--format", "html") == 1
@@ -261,7 +261,7 @@ def test_a_page_has_the_rules_of_both_machines(capsys: pytest.CaptureFixture[str
     write("new.yml", CONCURRENCE.replace("B: ok}}", "C: ok}}").replace("- B:", "- C:"))
     assert diff("main.yml", "main.yml", "--format", "html") == 0
     model = model_of(capsys.readouterr().out)
-    (both,) = (each for each in model["nodes"] if each["path"] == "sm/BOTH")
+    (both,) = (item for item in model["nodes"] if item["path"] == "sm/BOTH")
     when = [["sm/BOTH/A", "ok"], ["sm/BOTH/B", "ok"]]
     assert both["rules"] == [{"outcome": "done", "when": when, "change": "same"}]
     assert (both["join"], both["default"]) == ("all", "lost")
@@ -272,11 +272,11 @@ def test_a_page_has_the_rules_of_both_machines(capsys: pytest.CaptureFixture[str
     write("new.yml", CONCURRENCE.replace("{A: ok, B: ok}", "{A: ok}"))
     assert diff("main.yml", "new.yml", "--format", "html") == 1
     model = model_of(capsys.readouterr().out)
-    (both,) = (each for each in model["nodes"] if each["path"] == "sm/BOTH")
-    found = [(each["change"], [path for path, _ in each["when"]]) for each in both["rules"]]
+    (both,) = (item for item in model["nodes"] if item["path"] == "sm/BOTH")
+    found = [(item["change"], [path for path, _ in item["when"]]) for item in both["rules"]]
     assert found == [("added", ["sm/BOTH/A"]), ("removed", ["sm/BOTH/A", "sm/BOTH/B"])]
-    edges = {(each["source"], each["outcome"], each["kind"]): each["change"]
-             for each in model["edges"]}  # fmt: skip
+    edges = {(item["source"], item["outcome"], item["kind"]): item["change"]
+             for item in model["edges"]}  # fmt: skip
     assert edges["sm/BOTH/A", "ok", "rule"] == "same"
     assert edges["sm/BOTH/B", "ok", "rule"] == "removed"
     assert edges["sm/BOTH/B", "bad", "default"] == "same"

@@ -202,7 +202,7 @@ def test_every_state_type_is_told(
     monkeypatch.chdir(tmp_path)
     assert main(["states", "--format", "json"]) == 0
     every = json.loads(capsys.readouterr().out)
-    names = [each["name"] for each in every]
+    names = [item["name"] for item in every]
     assert set(CONTAINERS) < set(names)
     assert {"MoveToJointPositionsState", "ScriptedState", "Base"} < set(names)
     assert "Utils" not in names
@@ -210,17 +210,17 @@ def test_every_state_type_is_told(
     listed = capsys.readouterr().out
     assert main(["states", "--format", "md"]) == 0
     document = capsys.readouterr().out
-    for each in every:
-        assert each["doc"], each["name"]
-        assert f"\n  {each['name']} " in listed
-        assert f"## {each['name']}\n" in document
-    for each in every[::5]:
-        assert main(["states", each["name"], "--format", "json"]) == 0
-        assert json.loads(capsys.readouterr().out) == each
-        assert main(["states", each["name"]]) == 0
+    for item in every:
+        assert item["doc"], item["name"]
+        assert f"\n  {item['name']} " in listed
+        assert f"## {item['name']}\n" in document
+    for item in every[::5]:
+        assert main(["states", item["name"], "--format", "json"]) == 0
+        assert json.loads(capsys.readouterr().out) == item
+        assert main(["states", item["name"]]) == 0
         told = capsys.readouterr().out
         for part in ("variables", "input_keys", "output_keys", "outcomes"):
-            for row in each[part]:
+            for row in item[part]:
                 assert f"\n  {row['name']}" in told
 
 

@@ -55,13 +55,13 @@ def seeds(database: Path) -> list[int]:
 def test_the_report(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     summary = swept(capsys, "--runs", "60", "--jobs", "2")
     assert summary["runs"] == 60
-    assert sum(each["count"] for each in summary["outcomes"]) == 60
+    assert sum(item["count"] for item in summary["outcomes"]) == 60
     good = summary["success"]
     assert good["outcomes"] == ["succeeded"]
     assert good["interval"][0] < good["share"] < good["interval"][1]
     assert summary["coverage"]["states"] == {"visited": 3, "total": 3, "missing": []}
     assert [
-        (each["path"], each["outcome"]) for each in summary["coverage"]["transitions"]["missing"]
+        (item["path"], item["outcome"]) for item in summary["coverage"]["transitions"]["missing"]
     ] == [("sm/GRASP", "preempted")]
     assert sum(group["count"] for group in summary["failures"]) == 60 - good["count"]
 
@@ -100,7 +100,7 @@ def test_the_prediction_is_within_the_interval_of_the_sweep(
     assert low < found["prediction"]["outcomes"]["succeeded"] < high
     assert low < exact < high
     assert abs(found["prediction"]["outcomes"]["succeeded"] - exact) < (high - low) / 2
-    assert [each["path"] for each in found["failures"]] == ["sm/GRASP", "sm/FIND"]
+    assert [item["path"] for item in found["failures"]] == ["sm/GRASP", "sm/FIND"]
 
 
 @pytest.mark.slow
@@ -323,7 +323,7 @@ def test_two_sweeps_at_once_count_each_run_once(folder: Path) -> None:
     words = (*MOCK, "--runs", "60", "--database", "sweep.db", "--format", "json")
     with ThreadPoolExecutor(2) as pool:
         both = list(pool.map(lambda _: smachac(*words, folder=folder), range(2)))
-    assert [each.returncode for each in both] == [0, 0], [each.stderr for each in both]
+    assert [item.returncode for item in both] == [0, 0], [item.stderr for item in both]
     assert both[0].stdout == both[1].stdout
     assert json.loads(both[0].stdout)["runs"] == 60
     assert seeds(folder / "sweep.db") == list(range(60))
@@ -376,7 +376,7 @@ def test_a_run_in_a_worker_equals_a_run_of_its_own(
         if view.is_whole(path)
     }
     assert len(swept) > 20
-    assert swept == {each["path"]: (each["outcomes"], each["longest"]) for each in alone}
+    assert swept == {item["path"]: (item["outcomes"], item["longest"]) for item in alone}
     source = Source(script, Path(script).read_text("utf-8"))
     task = Task(
         source=source,

@@ -143,7 +143,7 @@ def test_a_broken_bag(
     length: int, storage: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write_bag(folder / "bag", storage, {(TOPIC, TEXT_TYPE): texts()})
-    (data,) = (each for each in (folder / "bag").iterdir() if each.suffix != ".yaml")
+    (data,) = (path for path in (folder / "bag").iterdir() if path.suffix != ".yaml")
     data.write_bytes(data.read_bytes()[:length])
     line = refused(["trace", "check", "main.yml", "bag"], capsys)
     assert "the trace bag cannot be read: it is broken: " in line
@@ -222,7 +222,7 @@ def test_a_bag_of_any_length_is_read_or_refused(
     storage: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write_bag(folder / "bag", storage, {(TOPIC, TEXT_TYPE): texts()})
-    (file,) = (each for each in (folder / "bag").iterdir() if each.suffix != ".yaml")
+    (file,) = (path for path in (folder / "bag").iterdir() if path.suffix != ".yaml")
     content = file.read_bytes()
     for length in range(0, len(content), 1 + len(content) // 60):
         file.write_bytes(content[:length])

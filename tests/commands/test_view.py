@@ -47,7 +47,7 @@ def script(tmp_path: Path) -> Path:
 
 def waits_at(path: str) -> Callable[[Any], bool]:
     return lambda message: (
-        message["kind"] == "control" and [each["path"] for each in message["at"]] == [path]
+        message["kind"] == "control" and [item["path"] for item in message["at"]] == [path]
     )
 
 
@@ -98,7 +98,7 @@ def test_a_page_opened_late_shows_the_whole_run(
     assert view.act(action="resume") == 200
     while (message := view.message()) is not None:
         events += message["events"] if message["kind"] == "trace" else []
-    assert [each["seq"] for each in events] == list(range(1, 9))
+    assert [event["seq"] for event in events] == list(range(1, 9))
 
 
 @pytest.mark.parametrize("mock", [False, True])
@@ -128,7 +128,7 @@ def test_view_draws_again_when_the_script_changes(
     script.write_text(GOOD.replace("succeeded: LAST", "succeeded: NOWHERE"))
     report = view.message()
     assert report["broken"]
-    assert "SM101" in [each["code"] for each in report["findings"]]
+    assert "SM101" in [item["code"] for item in report["findings"]]
     assert "LAST" in view.page()
     script.write_text(GOOD.replace("LAST", "FINAL"))
     assert drawn(view.message()) == ["sm", "sm/WAIT", "sm/FINAL"]
@@ -171,7 +171,7 @@ def test_view_follows_a_trace(script: Path, tmp_path: Path, start: Callable[...,
     assert second["seq"] == 2
     assert len(second["value"]) < 200
     trace.write_text(json.dumps({**event, "seq": 7}) + "\n")
-    assert [each["seq"] for each in view.message()["events"]] == [7]
+    assert [item["seq"] for item in view.message()["events"]] == [7]
     view.process.send_signal(signal.SIGINT)
     code, _, err = view.end()
     assert code == 130

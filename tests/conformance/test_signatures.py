@@ -125,7 +125,7 @@ def test_signature(branch: str, name: str, parameters: Parameters) -> None:
     if (branch, name) in BRANCHES:
         assert found == [*parameters, ("constants", "positional_or_keyword", False)]
     elif name in ABSTRACT:
-        assert [each[0] for each in found] == [each[0] for each in parameters]
+        assert [item[0] for item in found] == [parameter[0] for parameter in parameters]
     else:
         assert found == parameters
 
@@ -135,8 +135,8 @@ def test_signature_of_smach_ros(name: str) -> None:
     required, optional = ROS[name]
     kind = "positional_or_keyword"
     assert signature(smach_ros, name) == [
-        *((each, kind, True) for each in required.split()),
-        *((each, kind, False) for each in optional.split()),
+        *((part, kind, True) for part in required.split()),
+        *((part, kind, False) for part in optional.split()),
     ]
 
 

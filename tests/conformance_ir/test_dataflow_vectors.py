@@ -67,9 +67,9 @@ class Watched(Replay):
         names = {
             name
             for _, node in containers(machine.root)
-            for each in (node, *node.children)
-            for key in (*each.inputs, *each.outputs)
-            for name in (key.name, *(remap.to for remap in each.remaps))
+            for item in (node, *node.children)
+            for key in (*item.inputs, *item.outputs)
+            for name in (key.name, *(remap.to for remap in item.remaps))
         }
         self.always: dict[str, list[str]] = {
             f"{path}/{child.name}": [

@@ -134,7 +134,7 @@ def _keep(made: Path, kept: Path) -> None:
 @functools.cache
 def compilers() -> tuple[Compiler, ...]:
     """Those that are here, one of each kind."""
-    return tuple(Compiler(each.name, each.command) for each in installed())
+    return tuple(Compiler(item.name, item.command) for item in installed())
 
 
 COMPILERS = pytest.mark.parametrize(
@@ -150,7 +150,7 @@ COMPILERS = pytest.mark.parametrize(
 
 def last_with(*flags: str) -> Compiler:
     """The last of our compilers, the quickest, that can build with such flags."""
-    found = [each for each in compilers() if each.runs_with(*flags)]
+    found = [compiler for compiler in compilers() if compiler.runs_with(*flags)]
     if not found:
         pytest.skip(f"no compiler has what {' '.join(flags)} needs")
     return found[-1]

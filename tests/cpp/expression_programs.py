@@ -108,8 +108,8 @@ def program(batch: Sequence[Case], inputs: Sequence[Mapping[str, object]]) -> st
         for i, case in enumerate(batch)
     ]
     made = [
-        f"In{{{', '.join(cpp_value(script_data(each[name]), key_type(name)) for name in TYPES)}}}"
-        for each in inputs
+        f"In{{{', '.join(cpp_value(script_data(input_[name]), key_type(name)) for name in TYPES)}}}"
+        for input_ in inputs
     ]
     return PROGRAM.format(
         members="\n".join(f"  {cpp_type(key_type(name))} {name};" for name in TYPES),
@@ -217,12 +217,12 @@ def differences(
             ours, theirs = next(rest), python_value(case, values)
             if has(case.type, "number"):
                 # A zero without a sign in Python may have been a whole number.
-                ours, theirs = (each.replace("-0.0", "0.0") for each in (ours, theirs))
+                ours, theirs = (item.replace("-0.0", "0.0") for item in (ours, theirs))
             if ours == theirs:
                 tally.equal += 1
             elif ours[0] == theirs[0] == "!":
                 tally.errors += 1
-            elif ours[0] == "!" and Watched.huge and any(each in ours for each in LIMITS):
+            elif ours[0] == "!" and Watched.huge and any(limit in ours for limit in LIMITS):
                 tally.limits += 1
             elif Watched.odd or "=complex" in theirs:
                 tally.nan += 1

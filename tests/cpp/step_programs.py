@@ -99,7 +99,7 @@ def _random_step(leaf: Leaf, drawn: random.Random, *, apart: bool) -> ScenarioSt
 
 def text(machines: Sequence[Played], output: str) -> str:
     """The program of machines."""
-    return program_text([each.program for each in machines], output)
+    return program_text([machine.program for machine in machines], output)
 
 
 def disagreements(machines: Sequence[Played], printed: str) -> Iterator[str]:
@@ -108,11 +108,11 @@ def disagreements(machines: Sequence[Played], printed: str) -> Iterator[str]:
         [event for line in part.splitlines() if (event := _event(line)) is not None]
         for part in printed.split(f"{DONE}\n")[:-1]
     ]
-    assert len(traces) == sum(len(each.paths) for each in machines)
+    assert len(traces) == sum(len(machine.paths) for machine in machines)
     found = iter(traces)
-    for each in machines:
-        for path, case in zip(each.paths, each.cases, strict=True):
-            expected = expected_trace(each.machine, path.scenario, case)
+    for machine in machines:
+        for path, case in zip(machine.paths, machine.cases, strict=True):
+            expected = expected_trace(machine.machine, path.scenario, case)
             difference = compare_traces(expected, next(found))
             if difference is not None:
-                yield f"{each.program.name}: {difference}"
+                yield f"{machine.program.name}: {difference}"

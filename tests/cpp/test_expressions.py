@@ -388,7 +388,7 @@ def python_lines(a: float, b: float) -> list[str]:
         lambda: float(f" {a!r} ") if a else 0.0,
         lambda: int(a * 2**40) / int(b * 2**40),
     ]
-    return [_line(each) for each in made]
+    return [_line(item) for item in made]
 
 
 def _line(function: Callable[[], float]) -> str:
@@ -436,9 +436,9 @@ def test_floats_are_those_of_python_to_the_last_bit(compiler: Compiler, folder: 
     expected = [line for pair in pairs for line in python_lines(*pair)]
     places = [f"{pairs[i // 8]} {i % 8}" for i in range(len(expected))]
     faults = [
-        each
-        for each in zip(places, lines, expected, strict=True)
-        if each[1] != each[2] and not _beyond(each, pairs)
+        row
+        for row in zip(places, lines, expected, strict=True)
+        if row[1] != row[2] and not _beyond(row, pairs)
     ]
     assert faults == []
 

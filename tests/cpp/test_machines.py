@@ -118,9 +118,9 @@ def test_sanitizers_find_nothing(tmp_path: Path) -> None:
 @pytest.mark.nightly
 def test_threads_do_not_race(tmp_path: Path) -> None:
     parallel = [
-        each
-        for each in [*of_scripts(), *drawn(3, 15)]
-        if any(isinstance(node, Concurrence) for _, node in walk(each[0][0].root))
+        script
+        for script in [*of_scripts(), *drawn(3, 15)]
+        if any(isinstance(node, Concurrence) for _, node in walk(script[0][0].root))
     ]
     assert len(parallel) > 3
     agree(parallel, last_with(*THREADED), tmp_path, *THREADED)
@@ -133,10 +133,10 @@ def test_machines_run_without_exceptions_and_type_information(
 ) -> None:
     """Machines that catch exceptions are refused by such a compiler, and are left out."""
     unfailing = [
-        each
-        for each in [*of_scripts(), *drawn(4, 10)]
-        if all(event["event"] != "error" for event in each[1])
-        and not any(node.catches for _, node in walk(each[0][0].root))
+        script
+        for script in [*of_scripts(), *drawn(4, 10)]
+        if all(event["event"] != "error" for event in script[1])
+        and not any(node.catches for _, node in walk(script[0][0].root))
     ]
     assert len(unfailing) > 10
     agree(unfailing, compiler, tmp_path, *BARE)

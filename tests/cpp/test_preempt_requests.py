@@ -21,8 +21,8 @@ def differing(seed: int, start: int, stop: int, compiler: Compiler, folder: Path
     """Machines that do something else when compiled."""
     drawn = cases(seed, stop)[start:]
     parts = [part(case, f"r{number}") for number, case in enumerate(drawn)]
-    assert all(isinstance(each, Part) for each in parts), parts
-    runs = replay([each for each in parts if isinstance(each, Part)], compiler, folder)
+    assert all(isinstance(item, Part) for item in parts), parts
+    runs = replay([item for item in parts if isinstance(item, Part)], compiler, folder)
     return [
         case["id"]
         for case in drawn

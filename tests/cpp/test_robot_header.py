@@ -108,7 +108,7 @@ def project(folder: Path, robot: str, first: str = "left arm", second: str = "ba
 
 def build(script: Path, *options: str) -> int:
     call = ["build", str(script), "--target", "cpp", "-o", str(script.parent / "out")]
-    return cli.main([*call, *(word for each in options for word in ("--option", each))])
+    return cli.main([*call, *(word for option in options for word in ("--option", option))])
 
 
 def simulated(robot: robots.Robot) -> tuple[MountedLimb, ...]:

@@ -89,7 +89,7 @@ def machines() -> list[Played]:
         machine = analyse_script(path, [], []).checked
         if machine is not None:
             found.append(played(machine, f"script_{number}", BOUNDS))
-    return [each for each in found if each is not None]
+    return [item for item in found if item is not None]
 
 
 @pytest.mark.slow

@@ -271,7 +271,7 @@ def test_a_type_that_cpp_lacks_in_an_interface_is_refused_at_its_key(type_: str)
     files = {"main.yml": ROUTED, "templates/Hit.yml": ROUTE}
     report, text = made({name: each.replace("TYPE", f'"{type_}"') for name, each in files.items()})
     assert text == ""
-    first = next(each for each in report if "`route`" in each.message)
+    first = next(item for item in report if "`route`" in item.message)
     assert (first.code, first.span.line) == ("SM601", 4)
     assert "the key `route`: the members of the type `" in first.message
     assert first.help is not None
@@ -285,7 +285,7 @@ def test_a_type_that_cpp_lacks_in_one_interface_only_is_refused() -> None:
     }
     report, text = made(files)
     assert text == ""
-    assert {each.code for each in report} == {"SM601"}
+    assert {item.code for item in report} == {"SM601"}
 
 
 TWO = """

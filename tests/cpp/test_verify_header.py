@@ -78,8 +78,8 @@ def test_a_header_that_nobody_edited_agrees(
         forgetful,
         without_stop,
         *(
-            pytest.param(each, marks=pytest.mark.slow)
-            for each in (mistaken, swapped_outcomes, deaf, crashing)
+            pytest.param(item, marks=pytest.mark.slow)
+            for item in (mistaken, swapped_outcomes, deaf, crashing)
         ),
     ],
 )

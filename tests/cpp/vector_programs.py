@@ -147,7 +147,9 @@ def declared(case: Json) -> Any:
 def _declaring(node: Any, path: str, leaves: Mapping[str, Json], *, loose: bool) -> Any:
     if isinstance(node, Leaf):
         steps = leaves[path].get("steps", [])
-        more = tuple(Outcome(name=each, span=NOWHERE) for each in undeclared_outcomes(node, steps))
+        more = tuple(
+            Outcome(name=outcome, span=NOWHERE) for outcome in undeclared_outcomes(node, steps)
+        )
         keys = undeclared_keys(node, steps) if loose else ()
         written = tuple(Key(name=key, span=NOWHERE) for key in keys)
         return replace(node, outcomes=node.outcomes + more, outputs=node.outputs + written)
@@ -214,13 +216,14 @@ def _around(case: Json, name: str, inner: Any) -> StateMachine:
         inputs=() if parent is None else inner.inputs,
         outputs=() if parent is None else inner.outputs,
         transitions=tuple(
-            nodes.Transition(outcome=each, target=each, span=NOWHERE) for each in results(inner)
+            nodes.Transition(outcome=result, target=result, span=NOWHERE)
+            for result in results(inner)
         ),
     )
     return StateMachine(
         name=name,
         type="StateMachine",
-        outcomes=tuple(Outcome(name=each, span=NOWHERE) for each in results(inner)),
+        outcomes=tuple(Outcome(name=result, span=NOWHERE) for result in results(inner)),
         children=(inner,),
         initial="root",
         userdata=tuple(
@@ -273,7 +276,7 @@ def _interface(
 
 def _class(type_: Any, path: str) -> str:
     """The class of a leaf."""
-    ends = [each.name for each in type_.outcomes]
+    ends = [outcome.name for outcome in type_.outcomes]
     ins = [f"    const {cpp_type(k.type)} &{identifier(k.name)};" for k in type_.input_keys]
     outs = [
         f"    smachac::Key<{cpp_type(k.type)}> &{identifier(k.name)};" for k in type_.output_keys
@@ -308,7 +311,7 @@ def _class(type_: Any, path: str) -> str:
 
 def _step_class(type_: Any, path: str) -> str:
     """The class of a leaf of a stepped machine."""
-    ends = [identifier(each.name) for each in type_.outcomes]
+    ends = [identifier(outcome.name) for outcome in type_.outcomes]
 
     def fields(part: str, keys: Iterable[Key]) -> list[str]:
         stored = {key.name: bounded(key.type, BOUNDS) for key in keys}
@@ -370,14 +373,14 @@ def program(parts: Sequence[Part], *, stepped: bool = False) -> str:
     return "\n".join(
         [
             head,
-            *(each.classes for each in parts),
+            *(item.classes for item in parts),
             "} // namespace vectors",
-            *(each.header for each in parts),
+            *(item.header for item in parts),
             "namespace vectors {",
             "template <class T> const char *name_of(T outcome) { return name(outcome); }",
             names + tail,
             "int main() {",
-            *(each.call for each in parts),
+            *(item.call for item in parts),
             "}",
             "",
         ]
@@ -462,7 +465,7 @@ class Remote(Replay):
         head, *keys = line.split("\t")
         _, path, asked = head.split(" ")
         path = path.removeprefix(f"{self.name}/root")
-        held = {key: json.loads(value) for key, _, value in (each.partition("=") for each in keys)}
+        held = {key: json.loads(value) for key, _, value in (item.partition("=") for item in keys)}
         leaf = self.graph[path]
         around = self.graph[path.rpartition("/")[0]]
         self.asked = view = _Asked(held, asked == "1", leaf, isinstance(around, nodes.Iterator))
@@ -524,7 +527,7 @@ def replay(
     flags = (*flags, "-pthread", f"-I{HOST.parent}")
     made = compiler.compile(program(parts, stepped=stepped), folder, *flags, standard=standard)
     found: dict[str, list[Ran]] = {}
-    by_name = {each.name: each for each in parts}
+    by_name = {item.name: item for item in parts}
     with subprocess.Popen(
         [str(made)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     ) as process:

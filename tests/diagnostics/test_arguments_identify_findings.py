@@ -46,7 +46,7 @@ _QUOTED = re.compile("`([^`]*)`")
 
 def words(finding: Finding) -> str:
     """The message; in a sub-script without the names of states, which may come from its caller."""
-    if all(each.span.source is finding.span.source for each in finding.related):
+    if all(item.span.source is finding.span.source for item in finding.related):
         return finding.message
     names = set((finding.node or "").split("/"))
     return _QUOTED.sub(lambda found: "``" if found[1] in names else found[0], finding.message)
@@ -136,7 +136,7 @@ def test_faulty_arguments_are_found() -> None:
     code = CODES["SM004"]
 
     def found(*findings: Finding) -> set[str]:
-        return faulty_codes([diagnostic(code, each) for each in findings])
+        return faulty_codes([diagnostic(code, finding) for finding in findings])
 
     one = Finding(span=at, message="`a` is wrong", arguments=("a",))
     assert found(one, one) == set()

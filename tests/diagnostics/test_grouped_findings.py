@@ -27,7 +27,7 @@ def test_a_hundred_implicit_exits_are_one_finding_with_a_list() -> None:
         " for `A1`, `A10`, `A11`, `A12`, `A13`, `A14`, `A15`, `A16`, `A17`, `A18`, `A19`, `A2` and"
         " 87 more"
     )
-    assert [each.span.text for each in item.related] == ["A1", "A2", "A3", "A4", "A5"]
+    assert [one.span.text for one in item.related] == ["A1", "A2", "A3", "A4", "A5"]
     assert item.finding.arguments == ("sm", "failed")
 
 

@@ -74,7 +74,7 @@ def test_templates_are_looked_up_once_however_many_are_unknown() -> None:
 )
 def test_an_opposite_is_no_suggestion(word: str, name: str) -> None:
     assert Guesser([name])(word) is None
-    assert Guesser([name]).sure(word) is None
+    assert Guesser([name]).unique_match(word) is None
     assert did_you_mean(word, [name]) is None
 
 

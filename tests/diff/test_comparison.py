@@ -37,7 +37,7 @@ def compared(before: Machine, after: Machine) -> Comparison:
 
 
 def brief(found: tuple[Change, ...]) -> list[tuple[str, ...]]:
-    return [(each.kind, each.what, each.path, each.name, each.before, each.after) for each in found]
+    return [(item.kind, item.what, item.path, item.name, item.before, item.after) for item in found]
 
 
 def mirrored(each: Change) -> Change:
@@ -91,8 +91,8 @@ def test_a_changed_transition_is_the_only_change(whole: Machine, data: st.DataOb
     path, step, name = data.draw(st.sampled_from(targets))
 
     def lead(node: Node) -> Node:
-        steps = [replace(each, target=name, origin="written") if each is step else each
-                 for each in node.transitions]  # fmt: skip
+        steps = [replace(other, target=name, origin="written") if other is step else other
+                 for other in node.transitions]  # fmt: skip
         return replace(node, transitions=tuple(steps))
 
     after = with_root(whole, rebuilt(whole.root, whole.root.name, path, lead))
@@ -150,8 +150,8 @@ def changed(root: StateMachine, path: str, new: str) -> StateMachine:
                 replace(
                     rule,
                     when=tuple(
-                        replace(each, child=new) if each.child == old else each
-                        for each in rule.when
+                        replace(item, child=new) if item.child == old else item
+                        for item in rule.when
                     ),
                 )
                 for rule in node.rules
@@ -222,7 +222,7 @@ def test_a_state_that_is_renamed_and_changed() -> None:
 def test_a_state_of_another_type_is_another_state() -> None:
     before = machine("sm", "done lost", pick(), place())
     after = machine("sm", "done lost", leaf("SUCK", PICK, type="Suction"), place())
-    assert [(each.kind, each.path) for each in changes(before, after)] == [
+    assert [(change.kind, change.path) for change in changes(before, after)] == [
         ("changed", "sm"),
         ("added", "sm/SUCK"),
         ("removed", "sm/PICK"),
@@ -232,7 +232,7 @@ def test_a_state_of_another_type_is_another_state() -> None:
 def test_two_states_that_changed_names() -> None:
     before = machine("sm", "done lost", pick(), place())
     after = machine("sm", "done lost", pick("A", done="B"), place("B"))
-    assert [(each.kind, each.was, each.path) for each in changes(before, after)] == [
+    assert [(change.kind, change.was, change.path) for change in changes(before, after)] == [
         ("renamed", "sm/PICK", "sm/A"),
         ("renamed", "sm/PLACE", "sm/B"),
     ]
@@ -242,7 +242,7 @@ def test_states_that_moved_into_a_container() -> None:
     before = machine("sm", "done lost", pick(), place())
     inner = machine("BOTH", "done lost", pick(), place(), to={"done": "=done", "lost": "=lost"})
     found = changes(before, machine("sm", "done lost", inner))
-    assert [(each.kind, each.what, each.path, each.was) for each in found] == [
+    assert [(item.kind, item.what, item.path, item.was) for item in found] == [
         ("changed", "field", "sm", ""),
         ("added", "state", "sm/BOTH", ""),
         ("moved", "state", "sm/BOTH/PICK", "sm/PICK"),
@@ -290,13 +290,13 @@ def test_findings_are_the_same_in_other_lines_and_under_other_names() -> None:
     found = compare(of_text(broken), of_text(moved))
     assert (found.added, found.removed, found.same > 0) == ([], [], True)
     fixed = compare(of_text(broken), of_text(SCRIPT))
-    assert {each.code for each in fixed.removed} >= {"SM101"}
+    assert {item.code for item in fixed.removed} >= {"SM101"}
     assert fixed.added == []
 
 
 def test_a_new_script_and_one_that_cannot_be_read() -> None:
     new = compare(None, of_text(SCRIPT))
-    assert [(each.kind, each.path) for each in new.changes] == [
+    assert [(change.kind, change.path) for change in new.changes] == [
         ("added", "sm"),
         ("added", "sm/WAIT"),
     ]

@@ -50,10 +50,10 @@ def test_every_package_of_an_extra_is_listed() -> None:
     extras = project()["optional-dependencies"]
     listed = {(row[0], row[1]) for row in rows("Optional")}
     assert listed == {
-        (extra, name(each)) for extra in extras if extra != "dev" for each in extras[extra]
+        (extra, name(item)) for extra in extras if extra != "dev" for item in extras[extra]
     }
     others = {package for _, package in listed}
-    wanted = [name(each) for each in extras["dev"] if name(each) not in others]
+    wanted = [name(item) for item in extras["dev"] if name(item) not in others]
     assert [row[0] for row in rows("For development")] == wanted
 
 

@@ -117,9 +117,9 @@ def wrong_shape(path: Path) -> list[str]:
     """The findings on text, fields, values, types and expressions."""
     found = smachac.check(path)
     return [
-        f"{each.code} {each.message}"
-        for each in found
-        if each.code.startswith("SM0") and each.code not in UNSEEN
+        f"{item.code} {item.message}"
+        for item in found
+        if item.code.startswith("SM0") and item.code not in UNSEEN
     ]
 
 
@@ -128,7 +128,7 @@ def faults_of_script(text: str, folder: Path) -> list[str]:
     (folder / "templates").mkdir()
     path = folder / "fragment.yml"
     path.write_text(completed(text), "utf-8")
-    for missing in [each for each in smachac.check(path) if each.code == "SM013"]:
+    for missing in [item for item in smachac.check(path) if item.code == "SM013"]:
         name = missing.finding.arguments[0]
         (folder / "templates" / f"{name}.yml").write_text(f"name: {name}\n{OUTCOMES}")
     return wrong_shape(path)
@@ -145,7 +145,7 @@ def faults_of_interface(text: str, folder: Path) -> list[str]:
     (folder / "templates" / f"{name}.tpl.py").write_text("")
     use = f"- A: {{template: {name}, transitions: {{o: aborted}}}}\n"
     (folder / "main.yml").write_text(completed(use), "utf-8")
-    return [each for each in wrong_shape(folder / "main.yml") if not each.startswith("SM005")]
+    return [item for item in wrong_shape(folder / "main.yml") if not item.startswith("SM005")]
 
 
 def faults_of_data(text: str, kind: DataKind, folder: Path) -> list[str]:
@@ -156,7 +156,7 @@ def faults_of_data(text: str, kind: DataKind, folder: Path) -> list[str]:
             (folder / robot.split()[1]).write_text(robot, "utf-8")
     source = Source(str(folder / "fragment.yml"), text)
     check_data_file(source, kind, disk_library(folder, []), report)
-    return [f"{each.code} {each.message}" for each in report]
+    return [f"{item.code} {item.message}" for item in report]
 
 
 def faults_of_scenario(text: str) -> list[str]:
@@ -204,7 +204,7 @@ def test_the_readme_shows_an_example_and_its_message(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """One word of the example is misspelt; the message is the one that `check` prints of it."""
-    ((_, fragment),) = [each for each in blocks(ROOT / "README.md") if each[0] == "yaml"]
+    ((_, fragment),) = [block for block in blocks(ROOT / "README.md") if block[0] == "yaml"]
     _, message, *_ = [text for kind, text in blocks(ROOT / "README.md") if kind != "sh"]
     folder = ROOT / "examples" / "08_pick_and_place"
     script = (folder / "main.yml").read_text("utf-8")
@@ -231,9 +231,9 @@ def test_the_comments_of_the_ci_page_allow_findings(tmp_path: Path) -> None:
         (tmp_path / "templates" / f"{name}.yml").write_text(interface, "utf-8")
     path = tmp_path / "main.yml"
     path.write_text(whole, "utf-8")
-    assert [each.code for each in smachac.check(path) if each.code != "SM105"] == []
+    assert [item.code for item in smachac.check(path) if item.code != "SM105"] == []
     path.write_text(whole.replace("# smachac:", "# "), "utf-8")
-    assert {each.code for each in smachac.check(path)} >= set(re.findall(r"SM\d+", states))
+    assert {item.code for item in smachac.check(path)} >= set(re.findall(r"SM\d+", states))
 
 
 def lines() -> Iterator[tuple[str, str]]:

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import smachac
+from smachac.targets import target_names
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "targets.md").read_text("utf-8")
@@ -41,6 +42,11 @@ def missing(block: str, header: str) -> str | None:
     return None
 
 
+def test_each_target_has_a_section() -> None:
+    headings = re.findall(r"^## (.+)$", PAGE, re.MULTILINE)
+    assert set(target_names()) <= {name for heading in headings for name in heading.split(", ")}
+
+
 def test_blocks_are_found() -> None:
     assert [folder for folder, _ in shown("python")] == ["09_stacking"]
     folders = [folder for folder, _ in shown("cpp")]
@@ -50,7 +56,7 @@ def test_blocks_are_found() -> None:
 
 @pytest.mark.parametrize(
     ("target", "folder", "block"),
-    [(target, *each) for target in ("cpp", "python") for each in shown(target)],
+    [(target, *item) for target in ("cpp", "python") for item in shown(target)],
 )
 def test_a_program_holds_what_is_shown_of_it(target: str, folder: str, block: str) -> None:
     files = smachac.compile(ROOT / "examples" / folder / "main.yml", target)

@@ -106,7 +106,7 @@ def test_a_shell_runs_the_tutorial_as_printed(tmp_path: Path) -> None:
     done = list(tutorial.typed(folder, installed=True, environment=environment))
     page = tutorial.PAGE.read_text("utf-8")
     assert len(done) == page.count("\n$ ")
-    assert [(each.step.command, each.printed) for each in done if not each.as_printed] == []
+    assert [(item.step.command, item.printed) for item in done if not item.as_printed] == []
 
 
 def test_the_tutorial_begins_with_the_installation() -> None:

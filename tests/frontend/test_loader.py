@@ -50,8 +50,8 @@ def test_scripts_are_searched_in_the_folder_of_the_calling_file(
         Path(name).parent.mkdir(exist_ok=True)
         Path(name).write_text(text, "utf-8")
     found = [
-        [(item.code, item.message, item.span.source.name, item.span.line) for item in each.report]
-        for each in (
+        [(item.code, item.message, item.span.source.name, item.span.line) for item in one.report]
+        for one in (
             analyse(Source("main.yml", MAIN), memory_library(files, BUILT_IN), []),
             analyse_script("main.yml"),
         )

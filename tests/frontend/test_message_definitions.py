@@ -78,7 +78,7 @@ def test_fields_of_all_types() -> None:
         "geometry_msgs/msg/Pose other_pose\n"
         "time stamp"
     )
-    assert [(each.name, str(each.type)) for each in found.fields] == [
+    assert [(field.name, str(field.type)) for field in found.fields] == [
         ("header", "std_msgs/Header"),
         ("held", "bool"),
         ("number", "uint8"),
@@ -91,7 +91,7 @@ def test_fields_of_all_types() -> None:
         ("other_pose", "geometry_msgs/Pose"),
         ("stamp", "time"),
     ]
-    assert [each.span.text for each in found.fields] == [each.name for each in found.fields]
+    assert [field.span.text for field in found.fields] == [field.name for field in found.fields]
     turn = found.field("turn")
     assert turn is not None
     assert turn.type == FieldType(name="float64", array=True, size=9)
@@ -108,13 +108,13 @@ def test_constants_and_default_values() -> None:
         'string name "none # at all"\n'
         "float64[] angles [0.0, 1.5]\n"
     )
-    assert [(each.name, each.value) for each in found.constants] == [
+    assert [(constant.name, constant.value) for constant in found.constants] == [
         ("OPEN", "0"),
         ("CLOSED", "1"),
         ("MOTTO", "never # stop"),
         ("QUOTED", "'a # b'"),
     ]
-    assert [(each.name, each.default) for each in found.fields] == [
+    assert [(field.name, field.default) for field in found.fields] == [
         ("count", "5"),
         ("name", '"none # at all"'),
         ("angles", "[0.0, 1.5]"),
@@ -124,12 +124,12 @@ def test_constants_and_default_values() -> None:
 def test_services_and_actions_have_parts() -> None:
     service = read("geometry_msgs/Pose pose\n---\nbool success\nstring message\n", "srv")
     assert service is not None
-    assert [each.name for each in service.part("request").fields] == ["pose"]
-    assert [each.name for each in service.part("response").fields] == ["success", "message"]
+    assert [field.name for field in service.part("request").fields] == ["pose"]
+    assert [field.name for field in service.part("response").fields] == ["success", "message"]
     assert service.part("response").name == "cell_msgs/Grasp.response"
     action = read("int32 order\n---\n---\nint32 done\n", "action")
     assert action is not None
-    assert [len(each.fields) for each in action.messages] == [1, 0, 1]
+    assert [len(item.fields) for item in action.messages] == [1, 0, 1]
     with pytest.raises(ValueError, match="not in tuple"):
         service.part("feedback")
 
@@ -197,7 +197,7 @@ def test_definitions_in_memory() -> None:
     library = memory_library(files, NOTHING)
 
     def names(text: str, kind: DefinitionKind) -> list[str]:
-        return [each.name for each in find_definitions(text, kind, library)]
+        return [definition.name for definition in find_definitions(text, kind, library)]
 
     assert names("cell_msgs/Grasp", "srv") == ["Grasp"]
     assert names("cell_msgs/msg/TidyAction", "action") == ["Tidy"]
@@ -217,8 +217,8 @@ def write(folder: Path, file: str, text: str) -> Path:
 def found(main: Path, text: str = "cell_msgs/Grasp") -> list[str]:
     library = disk_library(main, [])
     return [
-        each.part("request").fields[0].name
-        for each in find_definitions(text, "srv", library)
+        definition.part("request").fields[0].name
+        for definition in find_definitions(text, "srv", library)
     ]  # fmt: skip
 
 
@@ -258,7 +258,7 @@ def test_installed_packages_of_both_versions_of_ros(
     assert found(main) == []
     monkeypatch.setenv("AMENT_PREFIX_PATH", os.pathsep.join([str(tmp_path / "two"), ""]))
     assert found(main) == ["two"]
-    folders = [str(tmp_path / each) for each in ("one/share", "absent", "src")]
+    folders = [str(tmp_path / item) for item in ("one/share", "absent", "src")]
     monkeypatch.setenv("ROS_PACKAGE_PATH", os.pathsep.join(folders))
     assert found(main) == ["two", "one", "nested"]
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "src/repository/cell_msgs"))

@@ -9,7 +9,7 @@ import pytest
 
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.text.pieces import PieceTree, parse_in_pieces
-from smachac.frontend.text.yaml_mends import parse_mended
+from smachac.frontend.text.yaml_recovery import parse_with_recovery
 from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree
 
 ROOT = Path(__file__).parents[2]
@@ -53,7 +53,7 @@ def flat(tree: Tree) -> list[tuple[object, ...]]:
 
 
 def whole(text: str) -> list[tuple[object, ...]]:
-    tree = parse_mended(Source("main.yml", text), [])
+    tree = parse_with_recovery(Source("main.yml", text), [])
     assert tree is not None
     return flat(tree)
 

@@ -76,7 +76,7 @@ def test_every_form_is_read() -> None:
     """
     machine = analysed(listed(items)).machine
     assert machine is not None
-    assert [in_words(each.form) for each in machine.properties] == [
+    assert [in_words(property_.form) for property_ in machine.properties] == [
         "never `tag safe` after `A` until `B` or `B:done`",
         "`A` before `B`",
         "`A` before `C`",
@@ -93,9 +93,9 @@ def test_every_form_is_read() -> None:
 def test_properties_in_a_file() -> None:
     machine = analysed(" safety.yml\n", safety="- before: {B: A}\n").machine
     assert machine is not None
-    assert [each.name for each in machine.properties] == ["`A` before `B`"]
+    assert [property_.name for property_ in machine.properties] == ["`A` before `B`"]
     (finding,) = [
-        each for each in analysed(" safty.yml\n", safety="[]").report if each.code == "SM004"
+        item for item in analysed(" safty.yml\n", safety="[]").report if item.code == "SM004"
     ]
     assert finding.span.text == "safty.yml"
     assert finding.help == "did you mean `safety.yml`?"

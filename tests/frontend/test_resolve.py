@@ -69,7 +69,7 @@ def test_typed_fields_keep_their_spans() -> None:
     pairs = [*work.transitions, *work.remapping]
     words = [word for pair in pairs for word in pair]
     words += [base.name, work.name, *work.claims]
-    words += [Word(each.name, each.span) for each in (*base.outcomes, *work.outcomes)]
+    words += [Word(item.name, item.span) for item in (*base.outcomes, *work.outcomes)]
     words += [word for word, _ in (*base.input_keys, *work.output_keys)]
     for outcome, conditions in both.outcome_map:
         words += [outcome, *(word for pair in conditions for word in pair)]
@@ -81,8 +81,8 @@ def test_typed_fields_keep_their_spans() -> None:
     words += [*work.sugar.retry.on, *work.sugar.for_each.on]
     assert len(words) == 22
     assert [word.span.text for word in words] == [word.text for word in words]
-    assert [each.span.text for each in base.userdata] == ["count", "pose"]
-    assert [each.value.span.text for each in base.userdata] == ["3", "home"]
+    assert [item.span.text for item in base.userdata] == ["count", "pose"]
+    assert [item.value.span.text for item in base.userdata] == ["3", "home"]
     assert work.sugar.for_each.items.span.text == "[a, 2]"
     assert work.sugar.timeout is not None
     assert work.sugar.timeout.span.text == "timeout"
@@ -171,8 +171,8 @@ def test_state_types_are_looked_up_in_few_places() -> None:
     ]
     assert users == [
         "smachac/commands/new.py",
-        "smachac/frontend/script/kept.py",
         "smachac/frontend/script/resolve.py",
+        "smachac/frontend/script/resolve_cache.py",
         "smachac/lsp/complete_templates.py",
         "smachac/lsp/facts.py",
         "smachac/lsp/session.py",

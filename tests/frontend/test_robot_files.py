@@ -180,7 +180,7 @@ def test_a_mistake_between_files(
 ) -> None:
     path = project(tmp_path, **{file.replace(".", "_"): text})
     found = [item.finding for item in smachac.check(path) if item.code == "SM018"]
-    assert [each.message.partition(" has a mistake: ")[2] for each in found] == [
+    assert [one.message.partition(" has a mistake: ")[2] for one in found] == [
         message.partition(": ")[2]
     ]
     span = found[0].span

@@ -14,7 +14,7 @@ def test_every_definition_is_valid_and_its_types_are_known() -> None:
     library = replace(BUILT_IN, ros=1)
     for file in FOLDER.glob("*.txt"):
         for path, texts in standard_package(file.stem, 1).texts.items():
-            kind = next(each for each in PARTS if path.startswith(f"{each}/"))
+            kind = next(part for part in PARTS if path.startswith(f"{part}/"))
             found = find_definitions(f"{file.stem}/{path.partition('/')[2]}", kind, library)
             assert len(found) == len(texts), path
             for definition in found:

@@ -211,7 +211,7 @@ def faults(sugar: str, transitions: str, folder: Path) -> dict[str, Finding]:
     path = folder / "main.yml"
     text = SCRIPT.replace("SUGAR", f"{sugar}, transitions: {transitions}")
     path.write_text(text, encoding="utf-8")
-    return {each.code: each.finding for each in smachac.check(path)}
+    return {item.code: item.finding for item in smachac.check(path)}
 
 
 def test_a_transition_on_an_outcome_that_retry_replaces_is_explained(tmp_path: Path) -> None:
@@ -328,6 +328,6 @@ states:
 """
     name = sugar.partition(":")[0]
     report = analysed({"main.yml": text}).report
-    told = [(each.code, each.span.text, each.help) for each in report if each.code == "SM003"]
+    told = [(item.code, item.span.text, item.help) for item in report if item.code == "SM003"]
     assert told == [("SM003", "timeout", f"write `timeout: 20s` beside `{name}`")]
-    assert not any(each.code == "SM004" for each in report)
+    assert not any(item.code == "SM004" for item in report)

@@ -172,7 +172,7 @@ def item(code: str, severity: Severity | None = None) -> Item:
 )
 def test_selecting_and_ignoring(select: list[str], ignore: list[str], expected: str) -> None:
     report = [item(code) for code in ("SM101", "SM105", "SM201", "SM204")]
-    kept = [each.code for each in select_findings(report, select, ignore)]
+    kept = [finding.code for finding in select_findings(report, select, ignore)]
     assert kept == expected.split()
 
 
@@ -185,7 +185,9 @@ def test_a_mild_finding_of_a_firm_code_can_be_silenced() -> None:
 SOFT = [
     code
     for code in CODES.values()
-    if not code.firm and code.severity is Severity.ERROR and MAIN in explanation(code).wrong
+    if not code.unsuppressible
+    and code.severity is Severity.ERROR
+    and MAIN in explanation(code).wrong
 ]
 
 
@@ -210,7 +212,7 @@ def test_what_can_be_allowed_can_be_built(code: Code, tmp_path: Path) -> None:
             if file.endswith(".py"):
                 compile(text, file, "exec")
         # A target may lack what the finding is about; that for Python lacks nothing.
-        assert {each.code for each in problems} <= {"SM601", "SM602"}
+        assert {problem.code for problem in problems} <= {"SM601", "SM602"}
         assert bool(files) == (problems == [])
         assert files or name != "python"
 
@@ -235,7 +237,7 @@ states:
     assert source is not None
     analysis = analyse(source, disk_library(tmp_path / MAIN, report, codes=CODES), report)
     assert analysis.checked is None
-    assert "SM401" in {each.code for each in analysis.report}
+    assert "SM401" in {one.code for one in analysis.report}
 
 
 WORDS = st.sampled_from(
@@ -250,4 +252,4 @@ def test_any_text_with_comments_is_read(text: str) -> None:
     for fit in suppressions_in(source, report, CODES):
         assert fit.code == fit.span.text
         assert 1 <= fit.line <= len(source.line_starts)
-    assert {each.code for each in report} <= {"SM022"}
+    assert {one.code for one in report} <= {"SM022"}

@@ -72,12 +72,12 @@ def test_params_of_sub_scripts_that_nothing_uses(
 def test_a_look_up_that_fails_is_reported_where_it_is_wrong(
     fields: str, params: str, place: str
 ) -> None:
-    assert [each for each in found(fields, params) if "SM015" in each] == [place]
+    assert [item for item in found(fields, params) if "SM015" in item] == [place]
 
 
 def test_a_call_that_does_not_give_the_param_is_shown() -> None:
     (item,) = [item for item in report("doc: x", "other: 1") if item.code == "SM015"]
-    assert [each.span.source.name for each in item.related] == ["ask.yml"]
+    assert [one.span.source.name for one in item.related] == ["ask.yml"]
 
 
 def test_params_of_a_call_follow_those_of_the_sub_script() -> None:

@@ -38,15 +38,15 @@ def robot(links: str, *joints: str) -> Robot:
 
 
 def limbs(found: Robot) -> list[list[str]]:
-    return [[each.name for each in limb] for limb in found.limbs]
+    return [[item.name for item in limb] for limb in found.limbs]
 
 
 def test_joints_limits_and_links() -> None:
     joints = joint("x", "a", "b"), joint("y", "b", "c", "continuous"), joint("z", "c", "d", "fixed")
     found = robot("a b c d", *joints)
     assert found.name == "arm"
-    assert [(each.lower, each.upper) for each in found.joints] == [(-1, 2), (-math.inf, math.inf)]
-    assert [each.span.text for each in found.joints] == ["x", "y"]
+    assert [(item.lower, item.upper) for item in found.joints] == [(-1, 2), (-math.inf, math.inf)]
+    assert [item.span.text for item in found.joints] == ["x", "y"]
     assert found.frames == frozenset("abcd")
     assert limbs(found) == [["x", "y"]]
 

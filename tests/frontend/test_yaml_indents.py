@@ -9,8 +9,8 @@ import pytest
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
-from smachac.frontend.text.yaml_mends import parse_mended
 from smachac.frontend.text.yaml_outline import form_of, outline, rows_of, strays_of
+from smachac.frontend.text.yaml_recovery import parse_with_recovery
 from smachac.frontend.text.yaml_tree import Map, Tree, parse
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -66,7 +66,7 @@ def indented(text: str, first: str, last: str, by: int) -> str:
 
 def found(text: str) -> tuple[Tree | None, Report]:
     report: Report = []
-    return parse_mended(Source("main.yml", text), report), report
+    return parse_with_recovery(Source("main.yml", text), report), report
 
 
 @pytest.mark.parametrize(

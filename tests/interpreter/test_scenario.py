@@ -292,7 +292,7 @@ def test_problems_of_a_scenario_show_the_path_of_the_script(
     states: dict[str, str], message: str
 ) -> None:
     _, found = read_scenario({"states": states}, smachac.load(SUGAR, name="main.yml"))
-    assert any(message in f"{each.message}; {each.help}" for each in found), found
+    assert any(message in f"{item.message}; {item.help}" for item in found), found
 
 
 def test_an_outcome_is_drawn_from_its_probabilities() -> None:

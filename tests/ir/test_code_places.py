@@ -7,8 +7,9 @@ import ast
 import pytest
 
 from smachac.diagnostics.source import Source, Span
-from smachac.ir.code_places import key_place, node_place, python_tree
+from smachac.ir.code_places import key_place, node_place
 from smachac.ir.nodes import Expression
+from smachac.ir.script_code import script_code
 
 
 def code(written: str, text: str) -> Expression:
@@ -33,7 +34,7 @@ def code(written: str, text: str) -> Expression:
 )
 def test_a_part_of_code_is_found_in_the_script(written: str, text: str) -> None:
     expression = code(written, text)
-    tree = python_tree(text)
+    tree = script_code(text).tree
     assert isinstance(tree, ast.BinOp)
     place = node_place(expression, tree.right)
     expected = "bad" if "|" not in written else written  # lines of a block are not followed
@@ -42,7 +43,7 @@ def test_a_part_of_code_is_found_in_the_script(written: str, text: str) -> None:
 
 def test_text_from_params_has_one_place() -> None:
     expression = code("['open_', [params, n], '(1)']", "open_2(1)")
-    tree = python_tree("open_2(1)")
+    tree = script_code("open_2(1)").tree
     assert isinstance(tree, ast.Call)
     assert node_place(expression, tree.func) == expression.span
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from smachac.ir.code_places import python_tree
 from smachac.ir.code_slips import corrected, slips
+from smachac.ir.script_code import script_code
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ from smachac.ir.code_slips import corrected, slips
 def test_the_slip_is_marked_and_cured_where_that_is_certain(
     text: str, token: str, cure: str | None
 ) -> None:
-    assert python_tree(text) is None
+    assert script_code(text).tree is None
     found = slips(text)
     assert text[found[0].start : found[0].end] == token
     assert corrected(text, found) == cure
@@ -69,10 +69,10 @@ def test_an_assignment_in_a_condition_is_a_comparison() -> None:
 
 @given(st.text(alphabet="ab(){}[]'\"=!&|?:-+>. lambdaudreturn", max_size=60))
 def test_every_text_that_python_rejects_has_a_slip(text: str) -> None:
-    if python_tree(text) is not None:
+    if script_code(text).tree is not None:
         return
     found = slips(text)
     assert all(0 <= slip.start <= slip.end <= len(text) and slip.what for slip in found)
     assert found
     cured = corrected(text, found)
-    assert cured is None or python_tree(cured) is not None
+    assert cured is None or script_code(cured).tree is not None

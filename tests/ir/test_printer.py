@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from smachac.diagnostics.source import NOWHERE
+from smachac.grammars import parser_of
 from smachac.ir import parser
 from smachac.ir.nodes import (
     Concurrence,
@@ -131,7 +132,7 @@ def test_the_notation_says_what_a_machine_is() -> None:
     assert str(move.inputs[0].type) == "float<rad>[7]"
     assert [step.origin for step in move.transitions] == ["written", "implicit"]
     assert both.join == "any"
-    assert [(each.child, each.outcome) for each in both.rules[0].when] == [
+    assert [(item.child, item.outcome) for item in both.rules[0].when] == [
         ("left arm", "done"),
         ("RIGHT", "done"),
     ]
@@ -269,7 +270,7 @@ def test_deep_nesting_prints_and_reads() -> None:
 
 def test_the_grammar_has_every_kind_and_every_field_of_it() -> None:
     kinds = get_args(Node)
-    grammar = parser._parser()
+    grammar = parser_of("ir")
     assert {word for word in parser.KINDS if grammar_accepts(word)} == {k.keyword for k in kinds}
     names = {field.name for kind in (Machine, *kinds) for field in dataclasses.fields(kind)}
     places = {"span", "via", *(name for name in names if name.endswith(("_span", "_spans")))}

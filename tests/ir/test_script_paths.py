@@ -59,7 +59,7 @@ EACH = "for_each: {item: one, in: [a, b]}"
 )
 def test_the_path_of_a_state_is_that_of_the_script(sugar: str, shown: dict[str, str]) -> None:
     root = machine(sugar).root
-    found = {each.full: each.shown for each in walk_script(root)}
+    found = {item.full: item.shown for item in walk_script(root)}
     expected = {f"sm/DRIVE{full}": f"sm/DRIVE{path}" for full, path in shown.items()}
     assert found == {"sm": "sm", **expected}
     assert len(set(found.values())) == len(found)
@@ -81,7 +81,7 @@ def test_states_inside_a_container_with_sugar_have_its_path() -> None:
 def test_names_of_states_do_not_clash_with_those_of_sugar() -> None:
     for name in ("TIMED", "TRY", "TRIES", "TIMER", "PAUSE"):
         root = machine(f"{SLOWLY}; {LIMIT}; {EACH}", SCRIPT.replace("DRIVE", name)).root
-        found = [each.shown for each in walk_script(root)]
+        found = [item.shown for item in walk_script(root)]
         assert len(set(found)) == len(found)
         assert f"sm/{name}" in found
 

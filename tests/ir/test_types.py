@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from smachac.grammars import load
+from smachac.grammars import parser_of
 from smachac.grammars.standalone.lalr import LarkError
 from smachac.ir.types import ANY, Type, _TypeBuilder, parse_type, unknown_words
 from tests.strategies.machines import types
@@ -107,7 +107,7 @@ def test_plain_words_need_no_parser() -> None:
      "float<>", "float<a b>", "float< m >", "str<m>", "float<m>[7]", "float<m>?", "float<m,s>"],
 )  # fmt: skip
 def test_a_quantity_is_that_of_the_grammar(text: str) -> None:
-    parser = load("type", builder=_TypeBuilder())
+    parser = parser_of("type", _TypeBuilder)
     try:
         wanted = parser.parse(text)
     except (LarkError, ValueError):

@@ -25,8 +25,8 @@ EXAMPLES = sorted((ROOT / "examples").glob("[0-9]*/main.yml"))
 def test_each_state_of_an_example_is_one_state_of_the_view(path: Path) -> None:
     found = analyse_script(path).machine
     assert found is not None
-    mine = [each for each in walk_script(found.root) if not each.added and not role(each.node)]
-    assert list(written(found).states) == [each.plain for each in mine]
+    mine = [item for item in walk_script(found.root) if not item.added and not role(item.node)]
+    assert list(written(found).states) == [item.plain for item in mine]
     assert_every_node_has_its_place(found)
 
 
@@ -145,7 +145,7 @@ states:
     texts = [badge.text for badge in state.badges]
     assert texts == ["exception \N{RIGHTWARDS ARROW} error", "2 tries"]
     assert state.field_of("error") == "catches"
-    (whole, inner) = [each for each in generated(found).states.values() if each.name == "A"]
+    (whole, inner) = [item for item in generated(found).states.values() if item.name == "A"]
     assert (whole.repeated, inner.repeated) == ((), ())
 
 

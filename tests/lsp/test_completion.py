@@ -44,7 +44,7 @@ def offered(text: str, folder: Path) -> list[str]:
     path = os.path.realpath(folder / "main.yml")
     session = Session([folder])
     session.change(path, text)
-    return [each.word for each in complete(text, offset, path, session.view(path))]
+    return [item.word for item in complete(text, offset, path, session.view(path))]
 
 
 @pytest.mark.parametrize(

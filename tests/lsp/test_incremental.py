@@ -26,8 +26,8 @@ def identity_of(item: Diagnostic) -> tuple[Any, ...]:
     """All that a user sees of a finding, with its places."""
     finding = item.finding
     related = [
-        (each.span.source.name, (each.span.start, each.span.end), each.message)
-        for each in finding.related
+        (one.span.source.name, (one.span.start, one.span.end), one.message)
+        for one in finding.related
     ]
     steps = [(step.node, step.label) for step in finding.path]
     return (
@@ -44,7 +44,7 @@ def identity_of(item: Diagnostic) -> tuple[Any, ...]:
 
 def found(session: Session, main: str) -> list[str]:
     reports = session.check(main).values()
-    return sorted(repr(identity_of(item)) for each in reports for item in each)
+    return sorted(repr(identity_of(item)) for report in reports for item in report)
 
 
 def fresh(main: str, texts: dict[str, str]) -> list[str]:
@@ -89,7 +89,7 @@ def test_findings_in_a_sub_script_that_has_not_changed(tmp_path: Path) -> None:
     main, wait = str(folder / "main.yml"), str(folder / "wait.yml")
     session = Session([folder])
     first = fresh(main, texts)
-    codes = {item.code for each in session.check(main).values() for item in each}
+    codes = {item.code for one in session.check(main).values() for item in one}
     assert codes >= KEPT
     faults = container(session, main, "FIRST")
     for seconds in ("2", "3"):
@@ -168,7 +168,7 @@ def test_a_call_that_is_used_twice_by_an_alias_keeps_the_places_of_both(tmp_path
         (folder / name).write_text(text, "utf-8")
     main, other = str(folder / "main.yml"), str(folder / "rest.yml")
     session = Session([folder])
-    places = {item.span.start for each in session.check(main).values() for item in each}
+    places = {item.span.start for one in session.check(main).values() for item in one}
     assert {at for at in range(len(ALIASED)) if ALIASED.startswith("-1", at)} <= places
     for _ in range(2):
         session.change(other, session.text(other).replace("1", "2") + "\n")
@@ -265,5 +265,5 @@ def test_a_param_that_is_fixed_in_a_state_that_has_not_changed_is_found_again(
         text = NODE.replace("time: 1.0, ", f"time: {time}, ")
         session.change(main, text)
         assert found(session, main) == fresh(main, {main: text})
-        codes = [item.code for each in session.check(main).values() for item in each]
+        codes = [item.code for one in session.check(main).values() for item in one]
         assert "SM610" in codes, codes

@@ -129,7 +129,7 @@ def test_words(kind: FileKind, old: str, new: str, words: list[str], tmp_path: P
     view = session.view(path)
     assert view is not None
     assert view.kind == kind
-    found = [each.word for each in complete(text, offset, path, view)]
+    found = [item.word for item in complete(text, offset, path, view)]
     assert {*words} <= {*found}
 
 
@@ -147,7 +147,7 @@ def test_what_is_there_or_elsewhere_is_not_offered(
     kind: FileKind, old: str, new: str, absent: list[str], tmp_path: Path
 ) -> None:
     session, path, text, offset = opened(kind, old, new, tmp_path)
-    found = [each.word for each in complete(text, offset, path, session.view(path))]
+    found = [item.word for item in complete(text, offset, path, session.view(path))]
     assert found
     assert not {*absent} & {*found}
 
@@ -155,7 +155,7 @@ def test_what_is_there_or_elsewhere_is_not_offered(
 def test_words_are_inserted_as_the_file_wants_them(tmp_path: Path) -> None:
     def inserted(kind: FileKind, old: str, new: str) -> set[str]:
         session, path, text, offset = opened(kind, old, new, tmp_path)
-        return {each.text for each in complete(text, offset, path, session.view(path))}
+        return {item.text for item in complete(text, offset, path, session.view(path))}
 
     assert "doc: " in inserted("interface", "doc: Close the gripper.", "|")
     assert "templates = " in inserted("project", "ros = 2", "|")
@@ -301,7 +301,7 @@ def test_words_of_project_files(
     name: str, text: str, words: list[str], absent: list[str], tmp_path: Path
 ) -> None:
     session, path, plain, offset = at_mark(tmp_path, name, text)
-    found = {each.word for each in complete(plain, offset, path, session.view(path))}
+    found = {item.word for item in complete(plain, offset, path, session.view(path))}
     assert {*words} <= found
     assert not {*absent} & found
 

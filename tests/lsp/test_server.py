@@ -44,12 +44,12 @@ def client(server: Client, folder: Path) -> Iterator[Client]:
 
 
 def words(items: list[dict[str, Any]]) -> list[str]:
-    return [each["label"] for each in items]
+    return [item["label"] for item in items]
 
 
 def where(found: list[dict[str, Any]]) -> list[tuple[str, int]]:
     """File and line, counted from 1, of locations."""
-    return [(Path(each["uri"]).name, each["range"]["start"]["line"] + 1) for each in found]
+    return [(Path(item["uri"]).name, item["range"]["start"]["line"] + 1) for item in found]
 
 
 def applied(text: str, edits: list[dict[str, Any]]) -> str:
@@ -92,7 +92,7 @@ def test_findings_as_one_types(client: Client, folder: Path) -> None:
         "did you mean `LOAD_BLOCK`?",
     ]
     client.change(uri, text + "  - : [")
-    assert [each["code"] for each in client.findings(uri)] == ["SM001"]
+    assert [item["code"] for item in client.findings(uri)] == ["SM001"]
     client.change(uri, text)
     assert client.findings(uri) == []
 
@@ -101,7 +101,7 @@ def test_findings_have_related_places(client: Client, folder: Path) -> None:
     main = folder / "main.yml"
     text = main.read_text("utf-8").replace("  - LOAD_MARK:", "  - LOAD_TABLE:")
     uri = client.open(main, text)
-    finding = next(each for each in client.findings(uri) if each["code"] == "SM106")
+    finding = next(item for item in client.findings(uri) if item["code"] == "SM106")
     (related,) = finding["relatedInformation"]
     assert related["location"]["range"]["start"]["line"] == line_of(text, "LOAD_TABLE:")
 
@@ -112,7 +112,7 @@ def test_findings_in_a_sub_script_are_those_of_its_callers(client: Client, folde
     uri = client.open(sub)
     assert client.findings(uri) == []  # alone, its params would be unknown
     client.change(uri, text.replace("succeeded: LIFT", "succeeded: LIF"))
-    assert "SM101" in [each["code"] for each in client.findings(uri)]
+    assert "SM101" in [finding["code"] for finding in client.findings(uri)]
 
 
 def test_a_change_of_a_sub_script_is_seen_in_its_callers(client: Client, folder: Path) -> None:
@@ -141,7 +141,7 @@ def test_quick_fixes_and_suppressions(client: Client, folder: Path) -> None:
     document = {"textDocument": {"uri": uri}}
     found = client.ask("textDocument/codeAction", **document, range=here(text, "LOAD_BLOK"),
                        context={"diagnostics": []})  # fmt: skip
-    (fix,) = [each for each in found if each["kind"] == "quickfix"]
+    (fix,) = [item for item in found if item["kind"] == "quickfix"]
     assert (fix["title"], fix["isPreferred"]) == ("Replace `LOAD_BLOK` by `LOAD_BLOCK`", True)
     assert applied(text, fix["edit"]["changes"][uri]) == good
     text = good.replace("  home: [", "  home2: 1\n  home: [", 1)
@@ -149,7 +149,7 @@ def test_quick_fixes_and_suppressions(client: Client, folder: Path) -> None:
     (finding,) = client.findings(uri)
     found = client.ask("textDocument/codeAction", **document, range=finding["range"],
                        context={"diagnostics": []})  # fmt: skip
-    allow = next(each for each in found if each["title"] == f"Allow {finding['code']} here")
+    allow = next(item for item in found if item["title"] == f"Allow {finding['code']} here")
     client.change(uri, applied(text, allow["edit"]["changes"][uri]))
     assert client.findings(uri) == []
 
@@ -163,7 +163,7 @@ def test_completion(client: Client, folder: Path) -> None:
     found = client.at("completion", uri, text, "transitions: {suc|ceeded: LOAD_MARK")["items"]
     assert words(found)[:1] == ["succeeded"]
     found = client.at("completion", uri, text, "remapping: {positions: ho|me")["items"]
-    assert {each["label"]: each.get("detail") for each in found}["home"] == "float<rad>[7]"
+    assert {item["label"]: item.get("detail") for item in found}["home"] == "float<rad>[7]"
     found = client.at("completion", uri, text, "template: Load|ModelState")["items"]
     assert "Adds a model" in found[0]["documentation"]
     half = text.replace("transitions: {succeeded: LOAD_BLOCK, aborted: aborted}", "transitions: {")
@@ -224,7 +224,7 @@ def test_rename(client: Client, folder: Path) -> None:
     new = applied(text, change["edits"])
     assert new == text.replace("PICK_BLOCK", "GRASP")
     edit = client.at("rename", uri, text, "succeeded: PLACE_BLOCK, abo|rted", newName="lost")
-    files = {Path(each["textDocument"]["uri"]).name for each in edit["documentChanges"]}
+    files = {Path(item["textDocument"]["uri"]).name for item in edit["documentChanges"]}
     assert files == {"main.yml", "pick_block.yml"}
     for new_name, reason in (("GO_HOME", "already has a state"), ("a: b", "needs quotes")):
         with pytest.raises(ResponseError, match=reason):
@@ -243,7 +243,7 @@ def test_refactorings(client: Client, folder: Path) -> None:
     def action(title: str, at: dict[str, Any]) -> list[dict[str, Any]]:
         found = client.ask("textDocument/codeAction", **document, range=at,
                            context={"diagnostics": []})  # fmt: skip
-        one = next(each for each in found if each["title"] == title)
+        one = next(item for item in found if item["title"] == title)
         changes: list[dict[str, Any]] = client.ask("codeAction/resolve", **one)["edit"][
             "documentChanges"
         ]
@@ -256,10 +256,10 @@ def test_refactorings(client: Client, folder: Path) -> None:
     assert client.findings(uri) == []
     (folder / "pick_block.yml").unlink()
     found = action("Extract PICK_BLOCK into pick_block.yml", here(inlined, "PICK_BLOCK:"))
-    (created,) = [each for each in found if "kind" in each]
-    changes = [each for each in found if "kind" not in each]
+    (created,) = [item for item in found if "kind" in item]
+    changes = [item for item in found if "kind" not in item]
     assert (created["kind"], Path(created["uri"]).name) == ("create", "pick_block.yml")
-    assert {Path(each["textDocument"]["uri"]).name for each in changes} == {
+    assert {Path(item["textDocument"]["uri"]).name for item in changes} == {
         "main.yml", "pick_block.yml",
     }  # fmt: skip
     shutil.copy(EXAMPLES / "08_pick_and_place" / "pick_block.yml", folder)
@@ -276,20 +276,20 @@ def test_structure(client: Client, folder: Path) -> None:
     uri = client.open(main)
     document = {"textDocument": {"uri": uri}}
     (root,) = client.ask("textDocument/documentSymbol", **document)
-    assert [each["name"] for each in root["children"]][:2] == ["LOAD_TABLE", "LOAD_BLOCK"]
+    assert [item["name"] for item in root["children"]][:2] == ["LOAD_TABLE", "LOAD_BLOCK"]
     found = client.ask("workspace/symbol", query="close_gr")
-    found = [each for each in found if each["location"]["uri"].startswith(folder.as_uri())]
-    assert [(each["name"], each["containerName"]) for each in found] == [
+    found = [item for item in found if item["location"]["uri"].startswith(folder.as_uri())]
+    assert [(item["name"], item["containerName"]) for item in found] == [
         ("CLOSE_GRIPPER", "PICK_BLOCK")
     ]
     folds = client.ask("textDocument/foldingRange", **document)
     first = line_of(text, "- LOAD_TABLE")
     assert {"startLine": first, "endLine": first + 7} in folds
     lenses = client.ask("textDocument/codeLens", **document)
-    assert [each["command"]["title"] for each in lenses] == ["Run", "Build", "Draw"]
+    assert [lense["command"]["title"] for lense in lenses] == ["Run", "Build", "Draw"]
     whole = {"start": {"line": 0, "character": 0}, "end": {"line": 999, "character": 0}}
     hints = client.ask("textDocument/inlayHint", **document, range=whole)
-    assert [each["label"] for each in hints] == [": float<rad>[7]", ": Pose"]
+    assert [hint["label"] for hint in hints] == [": float<rad>[7]", ": Pose"]
     picture = client.ask("workspace/executeCommand", command="smachac.picture", arguments=[uri])
     assert picture["dot"].startswith('digraph "pick_and_place"')
     assert picture["places"]["pick_and_place/PICK_BLOCK/LIFT"]["uri"].endswith("pick_block.yml")
@@ -345,11 +345,13 @@ def test_interfaces_are_checked_with_the_scripts_that_use_them(
         "name: grasp\ntemplate: Base\noutcomes: [held, lost]\nstates:\n- GRASP: {template: Grasp}\n"
     )
     main_uri = client.open(main, text)
-    assert [each["code"] for each in client.findings(main_uri) if each["severity"] < 2] == []
+    assert [
+        finding["code"] for finding in client.findings(main_uri) if finding["severity"] < 2
+    ] == []
     uri = client.open(interface)
     assert client.findings(uri) == []
     client.change(uri, "name: Grasp\noutcomes: {held: {}, gone: {}}\nkind: machine\n")
-    assert [each["code"] for each in client.findings(uri)] == ["SM004"]
+    assert [finding["code"] for finding in client.findings(uri)] == ["SM004"]
     while (
         "SM102" not in str(client.diagnostics[main_uri])
         and not client.diagnostics[main_uri]["diagnostics"]

@@ -81,20 +81,20 @@ def test_the_results_are_those_of_one_process(project: list[Path], processes: in
     assert several == one
     assert list(other.reports) == list(batch.reports)
     assert other.uses == batch.uses
-    assert [len(each) for each in other.reports.values()] == [
-        len(each) for each in batch.reports.values()
+    assert [len(report) for report in other.reports.values()] == [
+        len(report) for report in batch.reports.values()
     ]
     assert {"damaged.yml", "latin.yml", "main02.yml"} <= {
-        each.span.source.name for each in batch.report
+        item.span.source.name for item in batch.report
     }
 
 
 def test_another_process_has_read_a_shared_text_as_the_same_text(project: list[Path]) -> None:
     """A fault in a shared sub-script is one finding, and its text is read by this process."""
     batch = checked(project, 3)[1]
-    found = [each for each in batch.report if each.span.source.name == "damaged.yml"]
-    assert len({id(each.span.source) for each in found}) == 1
-    assert sum(each.code == "SM102" for each in found) == 1
+    found = [item for item in batch.report if item.span.source.name == "damaged.yml"]
+    assert len({id(item.span.source) for item in found}) == 1
+    assert sum(item.code == "SM102" for item in found) == 1
 
 
 def in_others(action: str) -> MachineCheck:

@@ -39,7 +39,7 @@ def point(decorator: Callable[..., Any], options: dict[str, bool]) -> Any:
 
 @pytest.mark.parametrize("options", OPTIONS, ids=str)
 def test_a_class_behaves_as_that_of_the_standard_library(options: dict[str, bool]) -> None:
-    made, own = (point(each, options) for each in (records.dataclass, dataclasses.dataclass))
+    made, own = (point(item, options) for item in (records.dataclass, dataclasses.dataclass))
     assert str(inspect.signature(made)) == str(inspect.signature(own))
     assert made.__match_args__ == own.__match_args__
     assert hasattr(made(x=1), "__dict__") is hasattr(own(x=1), "__dict__")
@@ -58,7 +58,7 @@ def test_a_class_behaves_as_that_of_the_standard_library(options: dict[str, bool
     if own.__hash__ is None:
         assert made.__hash__ is None
     elif own.__hash__ is not object.__hash__:
-        assert [hash(made(**each)) for each in hashable] == [hash(own(**each)) for each in hashable]
+        assert [hash(made(**item)) for item in hashable] == [hash(own(**item)) for item in hashable]
     assert made(x=1) != own(x=1)
     with pytest.raises(TypeError, match="'x'"):
         made()

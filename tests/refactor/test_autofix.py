@@ -50,13 +50,13 @@ NAMES = ["PICK_BLOCK", "PLACE_BLOCK", "PICK_1", "GRASP", "LEFT", "done", "aborte
     ],
 )
 def test_what_was_meant_for_certain(word: str, meant: str | None) -> None:
-    assert Guesser(NAMES).sure(word) == meant
+    assert Guesser(NAMES).unique_match(word) == meant
 
 
 def test_of_two_names_as_near_none_is_certain() -> None:
-    assert Guesser(["GRASP_A", "GRASP_B"]).sure("GRASP_C") is None
-    assert Guesser(["GRASP_A", "grasp_a"]).sure("Grasp_A") is None
-    assert Guesser(["GRASP_A", "OTHER"]).sure("GRASP_C") == "GRASP_A"
+    assert Guesser(["GRASP_A", "GRASP_B"]).unique_match("GRASP_C") is None
+    assert Guesser(["GRASP_A", "grasp_a"]).unique_match("Grasp_A") is None
+    assert Guesser(["GRASP_A", "OTHER"]).unique_match("GRASP_C") == "GRASP_A"
 
 
 @pytest.mark.parametrize(
@@ -157,7 +157,7 @@ def test_a_fix_that_adds_an_error_is_not_written(
         " transitions: {ok: dnoe}}\n"
     )
     (folder / "main.yml").write_text(text)
-    assert main(["check", "main.yml", "--fix", *options]) == 1  # firm codes count all the same
+    assert main(["check", "main.yml", "--fix", *options]) == 1  # such codes count too
     # Both keys would be `transitions`; the target is corrected on its own.
     assert (folder / "main.yml").read_text() == text.replace("dnoe", "done")
     assert "(1 fixed)" in capsys.readouterr().out

@@ -78,10 +78,10 @@ def test_a_transition_leads_elsewhere_and_back(project: random.Random) -> None:
             continue
         apply(result)
         found = differences(before)
-        assert {(each.kind, each.what, each.name) for each in found} == {
+        assert {(item.kind, item.what, item.name) for item in found} == {
             ("changed", "transition", step.outcome)
         }
-        assert path in {each.path for each in found}
+        assert path in {item.path for item in found}
         assert comments() == remarks
         apply(edit("transition", path, outcome=step.outcome, target=step.target))
         assert texts() == files
@@ -97,7 +97,7 @@ def test_a_transition_is_removed_and_added(project: random.Random) -> None:
             continue
         step = project.choice(steps)
         apply(edit("transition", path, outcome=step.outcome))
-        names = {(each.what, each.name) for each in differences(before)}
+        names = {(difference.what, difference.name) for difference in differences(before)}
         assert names <= {("transition", step.outcome), ("outcome", step.outcome)}
         apply(edit("transition", path, outcome=step.outcome, target=step.target))
         assert differences(before) == ()
@@ -117,8 +117,8 @@ def test_a_state_is_added_and_removed(project: random.Random) -> None:
         after = project.choice([child.name for child in node.children])
         apply(edit("add", path, name="ADDED", type="SleepState", after=after))
         found = differences(before)
-        assert {(each.kind, each.what) for each in found} == {("added", "state")}
-        assert f"{path}/ADDED" in {each.path for each in found}
+        assert {(item.kind, item.what) for item in found} == {("added", "state")}
+        assert f"{path}/ADDED" in {item.path for item in found}
         to = {"to": node.children[0].name} if isinstance(node, StateMachine) else {}
         apply(edit("remove", f"{path}/ADDED", **to))
         assert texts() == files
@@ -145,9 +145,9 @@ def test_what_led_to_a_removed_state_leads_on(project: random.Random) -> None:
         )
         apply(result)
         found = differences(before)
-        assert ("removed", path) in {(each.kind, each.path) for each in found}
-        led = [each for each in found if each.what == "transition"]
-        assert {(each.before, each.after) for each in led} <= {(node.name, to)}
+        assert ("removed", path) in {(item.kind, item.path) for item in found}
+        led = [item for item in found if item.what == "transition"]
+        assert {(item.before, item.after) for item in led} <= {(node.name, to)}
         rewrite_files(result.undo, {path: source_of(text) for path, text in result.texts.items()})
         assert texts() == files
     assert refused < ROUNDS
@@ -194,12 +194,12 @@ def test_the_patch_and_the_findings() -> None:
         "   - PLACE: {template: ScriptedState, outcomes: [ok, lost],"
         " transitions: {ok: done, lost: PICK}}\n"
     )
-    assert "SM201" in {each.code for each in result.findings_added}
+    assert "SM201" in {item.code for item in result.findings_added}
     assert result.undo == {str(MAIN.resolve()): SCRIPT}
     assert MAIN.read_text() == SCRIPT
     apply(result)
     corrected = edit("transition", "PICK", outcome="ok", target="PLACE")
-    assert "SM201" in {each.code for each in corrected.findings_removed}
+    assert "SM201" in {item.code for item in corrected.findings_removed}
     assert list(corrected.texts.values()) == [SCRIPT]
 
 
@@ -315,7 +315,7 @@ def test_names_in_quotes(name: str) -> None:
     states = dict(walk(whole.root))
     added = states[f"sm/{name}"]
     assert isinstance(added, Leaf)
-    assert [each.value.data for each in added.variables] == [1.5]
+    assert [variable.value.data for variable in added.variables] == [1.5]
     assert {step.outcome: step.target for step in states["sm/PICK"].transitions}["ok"] == name
     assert Counter(SCRIPT.splitlines()) - Counter(MAIN.read_text().splitlines()) == Counter(
         ["        ok: PLACE  # then place it"]

@@ -129,5 +129,5 @@ def test_extracted_lines_keep_their_ends(tmp_path: Path) -> None:
     path.write_bytes(before.encode())
     assert main(["contain", str(path), "BOTH", "StateMachine", "FIRST", "SECOND"]) == 0
     assert main(["extract", str(path), "BOTH"]) == 0
-    (made,) = (each for each in tmp_path.glob("*.yml") if each != path)
+    (made,) = (item for item in tmp_path.glob("*.yml") if item != path)
     assert expect_same_ends(before, made.read_bytes().decode()) > 6

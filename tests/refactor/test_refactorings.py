@@ -170,7 +170,7 @@ def test_a_name_that_is_changed_twice_is_the_old_one(project: random.Random) -> 
     names: list[tuple[str, str, str]] = []
     for path, node in walk(machine().root):
         names.append(("state", path, node.name))
-        names += [("outcome", f"{path}/{each.name}", each.name) for each in node.outcomes]
+        names += [("outcome", f"{path}/{outcome.name}", outcome.name) for outcome in node.outcomes]
         if not isinstance(node, Leaf):
             keys = {key.name for key in (*node.inputs, *node.outputs)}
             keys |= {preset.key for preset in node.userdata}
@@ -281,8 +281,8 @@ def test_keys_are_seen_in_a_container_as_without_it(seed: int) -> None:
         code = main(["contain", "main.yml", "NEW", "StateMachine", *names[at : at + 3]])
         after = machine()
     assert (normalized(after.root) == normalized(before.root)) == (code != 0)
-    for each in range(20 if code == 0 else 0):
-        assert transcript(after, each) == transcript(before, each)
+    for number in range(20 if code == 0 else 0):
+        assert transcript(after, number) == transcript(before, number)
 
 
 def transcript(whole: Machine, seed: int) -> list[object]:
@@ -303,7 +303,7 @@ def transcript(whole: Machine, seed: int) -> list[object]:
             except UserdataError:
                 found[key.name] = "nothing"
         told.append((leaf.name, found))
-        outcome = draw.choice([each for each in outcome_names(leaf) if each != "preempted"])
+        outcome = draw.choice([name for name in outcome_names(leaf) if name != "preempted"])
         for key in leaf.outputs:
             if draw.random() < 0.7:
                 userdata[key.name] = [leaf.name, visits[leaf.name]]
@@ -340,8 +340,8 @@ def test_a_concurrence_decides_as_the_states_did_in_a_row(seed: int) -> None:
         after = analyse_script("main.yml").machine
     assert before is not None
     assert after is not None
-    for each in range(30 if code == 0 else 0):
-        assert ending(after, chosen, each) == ending(before, chosen, each)
+    for number in range(30 if code == 0 else 0):
+        assert ending(after, chosen, number) == ending(before, chosen, number)
 
 
 def ending(whole: Machine, mine: list[str], seed: int) -> list[str | None]:

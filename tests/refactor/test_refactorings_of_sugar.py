@@ -82,14 +82,14 @@ def test_sugar_survives_refactoring(scripts: int) -> None:
         with tempfile.TemporaryDirectory() as folder, inside(folder):
             Path("main.yml").write_text(written(draw), "utf-8")
             before, text = machine(), machine_text()
-            found = [each for each in walk_script(before.root) if not each.added][1:]
+            found = [item for item in walk_script(before.root) if not item.added][1:]
             outer = [
-                each for each in found if not isinstance(each.node, Leaf) and not each.node.sugar
+                item for item in found if not isinstance(item.node, Leaf) and not item.node.sugar
             ]
-            for each in outer[:1]:
-                assert command("extract", "main.yml", each.plain, "--to", "sub.yml") == 0
+            for item in outer[:1]:
+                assert command("extract", "main.yml", item.plain, "--to", "sub.yml") == 0
                 assert machine_text() == text
-                assert command("inline", "main.yml", each.plain) == 0
+                assert command("inline", "main.yml", item.plain) == 0
                 Path("sub.yml").unlink()
                 assert machine_text() == text
             old = draw.choice(found)
@@ -102,7 +102,7 @@ def test_sugar_survives_refactoring(scripts: int) -> None:
             names = ["A", "B", "C"][first : first + draw.randint(1, 3)]
             code = command("contain", "main.yml", "NEW", "StateMachine", *names)
             after = machine()
-        assert (code == 0) == ("NEW" in {each.node.name for each in walk_script(after.root)})
+        assert (code == 0) == ("NEW" in {item.node.name for item in walk_script(after.root)})
         for number in range(10 if code == 0 else 0):
             assert transcript(after, number) == transcript(before, number)
 

@@ -19,7 +19,7 @@ from smachac.diagnostics.repair import Certainty, edited_texts
 from smachac.diagnostics.source import Source
 from smachac.driver import Analysis, analyse
 from smachac.frontend.loader import memory_library
-from smachac.frontend.text.yaml_mends import parse_mended
+from smachac.frontend.text.yaml_recovery import parse_with_recovery
 from smachac.repair.search import MOST_CLUSTERS, again, clusters, unknown
 from tests.trust.judged_repairs import ALL_MUTATIONS, mutated
 from tests.trust.project_text import BUILT_IN, MAIN
@@ -55,7 +55,7 @@ SLIPS = {
 
 
 def analysed(files: Mapping[str, str]) -> Analysis:
-    library = replace(memory_library(files, BUILT_IN), parse=parse_mended)
+    library = replace(memory_library(files, BUILT_IN), parse=parse_with_recovery)
     return analyse(Source(MAIN, files[MAIN]), library, [], render=True)
 
 
@@ -135,7 +135,7 @@ def assert_proven(analysis: Analysis, cluster: Cluster) -> None:
     assert unknown(after) <= unknown(analysis)
     if unknown(after) < unknown(analysis):
         return
-    before, left = (serious(each) for each in (analysis, after))
+    before, left = (serious(one) for one in (analysis, after))
     assert len(left) < len(before)
     assert {key(item) for item in left} <= {key(item) for item in before}
 

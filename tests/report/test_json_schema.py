@@ -200,7 +200,7 @@ def test_descriptions_are_in_every_schema() -> None:
     for name in ("interface", "project"):
         assert all(entry["description"] for entry in GENERATED[name]["properties"].values())
     facts = schema.KEY_FACTS, schema.VARIABLE_FACTS, schema.OUTCOME_FACTS
-    assert all(text for each in facts for text in each.values())
+    assert all(text for fact in facts for text in fact.values())
 
 
 def test_the_command_prints_each_schema(capsys: pytest.CaptureFixture[str]) -> None:

@@ -62,7 +62,7 @@ def test_cells_of_the_page_are_shown_as_table_and_picture() -> None:
         pytest.skip("no Graphviz")
     page = (ROOT / "docs" / "api.md").read_text("utf-8")
     blocks = re.findall(r"^```python\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
-    start, table, picture = blocks[0], *(each for each in blocks if "cell:" in each)
+    start, table, picture = blocks[0], *(block for block in blocks if "cell:" in block)
     _, findings, machine = cells(start, table, picture)
     assert "<td" in findings["text/html"]
     assert "SM101" in findings["text/html"]

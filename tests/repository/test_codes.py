@@ -20,7 +20,7 @@ PROBLEMS = (
     errors.PROBLEMS,
 )
 ALL = [
-    *(each.code.code for problems in PROBLEMS for each in problems),
+    *(problem.code.code for problems in PROBLEMS for problem in problems),
     *(rule.code.code for rule in checks.RULES if rule is not template_blocks.unprinted_parts),
 ]
 """The codes of all problems and rules. `unprinted_parts` finds faults of a problem, SM605."""
@@ -41,7 +41,7 @@ def test_each_code_is_given_once_and_is_in_the_table() -> None:
 
 
 def test_the_tuples_are_in_the_order_of_their_codes() -> None:
-    tuples = [[each.code.code for each in problems] for problems in PROBLEMS]
+    tuples = [[problem.code.code for problem in problems] for problems in PROBLEMS]
     for rules in (checks.MACHINE_RULES, checks.CODE_RULES):
         tuples.append([rule.code.code for rule in rules])
     assert tuples == [sorted(codes) for codes in tuples]

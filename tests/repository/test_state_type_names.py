@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from pathlib import Path
 
 import smachac
@@ -32,3 +33,9 @@ def test_no_module_names_a_built_in_state_type() -> None:
         if any(isinstance(node, ast.Constant) and node.value in NAMES for node in ast.walk(tree)):
             naming.add(path.relative_to(PACKAGE).as_posix())
     assert naming == set(ALLOWED)
+
+
+def test_each_built_in_state_type_is_in_the_docs() -> None:
+    pages = [PACKAGE.parent / "docs" / f"{name}.md" for name in ("state_types", "migrating")]
+    words = set(re.findall(r"\w+", "".join(page.read_text("utf-8") for page in pages)))
+    assert NAMES - words == set()

@@ -156,7 +156,7 @@ def test_the_built_in_robots_fit(name: str) -> None:
 def test_the_files_of_the_page_fit() -> None:
     """The robots, scenes and faults that docs/robots.md shows."""
     page = (ROOT / "docs/robots.md").read_text("utf-8")
-    blocks = [each.partition("\n```")[0] for each in page.split("```yaml\n")[1:]]
+    blocks = [part.partition("\n```")[0] for part in page.split("```yaml\n")[1:]]
     found = []
     for block in blocks:
         data = plain(block)
@@ -177,7 +177,7 @@ def test_every_key_has_a_description(schema: Schema) -> None:
             own = part.get("properties", {}) if "additionalProperties" in part else {}
             below += [name for name, each in own.items() if not each.get("description")]
         elif isinstance(part, list):
-            below = [name for each in part for name in missing(each, at)]
+            below = [name for item in part for name in missing(item, at)]
         return below
 
     assert missing(schema, "") == []

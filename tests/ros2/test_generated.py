@@ -21,7 +21,7 @@ EXAMPLE = ROOT / "examples" / "ros2_mobile_base"
 
 def base(graph: Graph, *parameters: str) -> Program:
     """The simulated base of the example; it is ready."""
-    given = [text for each in parameters for text in ("-p", each)]
+    given = [text for parameter in parameters for text in ("-p", parameter)]
     program = graph._launch([PYTHON, str(EXAMPLE / "base.py"), "--ros-args", *given])
     program.expect("ready")
     return program

@@ -58,7 +58,7 @@ report("last", "LAST" in sum(states, []))
 server.stop()
 """
     )
-    line = next(each for each in output.splitlines() if each.startswith("structure: "))
+    line = next(item for item in output.splitlines() if item.startswith("structure: "))
     structure = json.loads(line.removeprefix("structure: "))
     assert structure["children"] == ["INNER", "LAST"]
     assert structure["container_outcomes"] == ["succeeded", "preempted"]

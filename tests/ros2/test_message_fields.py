@@ -118,7 +118,7 @@ def test_every_primitive_type_is_sent_as_it_was_meant_or_refused(graph2: Graph) 
     graph2.use_interfaces()
     server = graph2.start(SERVER)
     server.expect("ready")
-    calls = [f"call(BasicTypes, BasicTypes.Request({each}))" for each in (*SENT, *REFUSED)]
+    calls = [f"call(BasicTypes, BasicTypes.Request({item}))" for item in (*SENT, *REFUSED)]
     output = graph2.run("\n".join([CALLS, *calls]))
     outcomes = [line for line in output.splitlines() if line.startswith("outcome")]
     assert outcomes == [
@@ -168,7 +168,7 @@ def test_lists_are_sent_as_they_were_meant_or_refused(graph2: Graph) -> None:
     graph2.use_interfaces()
     server = graph2.start(SERVER)
     server.expect("ready")
-    calls = [f"call(Arrays, dict({each}))" for each in (*SENT_LISTS, *REFUSED_LISTS)]
+    calls = [f"call(Arrays, dict({list_}))" for list_ in (*SENT_LISTS, *REFUSED_LISTS)]
     output = graph2.run("\n".join([CALLS, *calls]))
     outcomes = [line for line in output.splitlines() if line.startswith("outcome")]
     assert outcomes == [

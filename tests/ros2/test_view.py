@@ -94,11 +94,11 @@ class Run:
     @property
     def active(self) -> set[str]:
         found: set[str] = set()
-        for each in self.events:
-            if each["event"] in ("start", "enter"):
-                found.add(each["path"])
-            elif each["event"] in ("exit", "finish"):
-                found.discard(each["path"])
+        for event in self.events:
+            if event["event"] in ("start", "enter"):
+                found.add(event["path"])
+            elif event["event"] in ("exit", "finish"):
+                found.discard(event["path"])
         return found
 
     def until(self, *active: str) -> None:
@@ -126,7 +126,7 @@ def test_a_view_that_waits_shows_the_run_of_a_node(
     speaker.say("second")
     run.until()
     assert program.end() == 0, program.output
-    lines = {(each["event"], each["path"], each.get("outcome")): each for each in run.events}
+    lines = {(event["event"], event["path"], event.get("outcome")): event for event in run.events}
     assert ("transition", "patrol/LISTEN", "succeeded") in lines
     assert ("exit", "patrol/BOTH/RIGHT", "succeeded") in lines
     assert lines["transition", "patrol/BOTH", "fine"]["to"] == "patrol:succeeded"

@@ -58,12 +58,12 @@ class _Recorded(Replay):
             raise
         finally:
             new = self.events[before:]
-            keys_written = [each["key"] for each in new if each["event"] == "write"]
+            keys_written = [item["key"] for item in new if item["event"] == "write"]
             if len(set(keys_written)) < len(keys_written):
                 self.left_out = TWICE
-            row["writes"] = {each["key"]: each["value"] for each in new if each["event"] == "write"}
+            row["writes"] = {item["key"]: item["value"] for item in new if item["event"] == "write"}
             row["answered"] = (asked or bool(stops)) and not userdata.preempted
-        if outcome not in {each.name for each in leaf.outcomes}:
+        if outcome not in {item.name for item in leaf.outcomes}:
             self.left_out = NO_OUTCOME
         assert outcome != "preempted" or row["answered"] or not userdata.preempted
         return str(outcome)

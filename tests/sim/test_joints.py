@@ -370,7 +370,7 @@ def test_an_arm_with_a_lift_a_continuous_wrist_and_a_mimic_gripper_picks(scara: 
         results += [arm.move_to_joints(above), arm.move_along(pose), arm.grip(command)]
         results += [arm.check_grasp("block")] if command == "close" else []
         results.append(arm.move_along(pose, HOVER))
-    assert [f"{each.outcome} {each.reason}".strip() for each in results] == ["succeeded"] * 9
+    assert [f"{result.outcome} {result.reason}".strip() for result in results] == ["succeeded"] * 9
     scara.sleep(0.5)
     assert scara.error("block", goal) < 0.004
     assert scara.at_rest("block")

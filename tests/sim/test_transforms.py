@@ -23,7 +23,7 @@ vectors = st.tuples(metres, metres, metres)
 def rotations(draw: st.DrawFn) -> Quaternion:
     axis = draw(vectors.filter(lambda v: math.hypot(*v) > 0.1))
     half = draw(st.floats(-math.pi, math.pi)) / 2
-    x, y, z = (each / math.hypot(*axis) * math.sin(half) for each in axis)
+    x, y, z = (item / math.hypot(*axis) * math.sin(half) for item in axis)
     return x, y, z, math.cos(half)
 
 

@@ -31,7 +31,7 @@ def test_a_gif_holds_the_run_and_is_small(tmp_path: Path) -> None:
         arm.move_to_joints(arm.solve_ik([[0.5, 0.0, 0.2], [1, 0, 0, 0]]) or [])
         count = int(world.time * video.RATE)
         assert not path.exists()
-    assert [each.name for each in path.parent.iterdir()] == ["run.gif"]
+    assert [item.name for item in path.parent.iterdir()] == ["run.gif"]
     assert frames(path) >= count - 1
     assert path.stat().st_size < 10_000 * count
     with Image.open(path) as image:
@@ -48,7 +48,7 @@ def test_an_interrupted_run_leaves_its_film(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         run()
     assert frames(path) >= 2
-    assert [each.name for each in tmp_path.iterdir()] == ["run.gif"]
+    assert [item.name for item in tmp_path.iterdir()] == ["run.gif"]
 
 
 def test_an_mp4(tmp_path: Path) -> None:
@@ -57,7 +57,7 @@ def test_an_mp4(tmp_path: Path) -> None:
     with sim.World(seed=0, record=path) as world:
         world.caption = "sm/IDLE"
     assert path.read_bytes()[4:8] == b"ftyp"
-    assert [each.name for each in tmp_path.iterdir()] == ["run.mp4"]
+    assert [item.name for item in tmp_path.iterdir()] == ["run.mp4"]
 
 
 def test_no_mp4_without_ffmpeg(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

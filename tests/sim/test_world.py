@@ -37,7 +37,7 @@ def carry(world: sim.World, name: str, goal: list[list[float]]) -> list[str]:
         if command == "close":
             results.append(arm.check_grasp(name))
         results.append(arm.move_along(pose, HOVER))
-    return [f"{each.outcome} {each.reason}".strip() for each in results]
+    return [f"{result.outcome} {result.reason}".strip() for result in results]
 
 
 @pytest.fixture(scope="module")
@@ -138,7 +138,7 @@ def test_a_model_that_cannot_be_loaded(idle: sim.World, call: dict[str, Any], re
     said = outcome(idle.load(**call))
     assert said[0] == "aborted"
     assert said[1].startswith(reason)
-    assert [(each.name, each.text) for each in idle.events[before:]] == [("load", said[1])]
+    assert [(event.name, event.text) for event in idle.events[before:]] == [("load", said[1])]
 
 
 def test_a_file_that_holds_no_model(idle: sim.World, tmp_path: Any) -> None:

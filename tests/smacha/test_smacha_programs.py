@@ -91,7 +91,7 @@ def test_a_class_defined_twice_and_not_alike_is_told() -> None:
     path = FOLDER / "scripts" / "counting.yml"
     report = built_report(path)
     assert [item.code for item in report] == ["SM607"]
-    assert [each.span.text for each in report[0].finding.related] == ["FOO", "BAR"]
+    assert [one.span.text for one in report[0].finding.related] == ["FOO", "BAR"]
 
 
 def test_python_2_is_translated_and_told() -> None:
@@ -133,9 +133,9 @@ def test_a_base_of_the_user_gets_what_its_own_code_needs() -> None:
 def test_imports_of_smach_do_without_it() -> None:
     text = text_of("whole")  # its base imports SMACH itself
     tree = ast.parse(text)
-    tried = [ast.unparse(each) for each in tree.body if isinstance(each, ast.Try)]
+    tried = [ast.unparse(statement) for statement in tree.body if isinstance(statement, ast.Try)]
     for name in ("smach", "smach_ros"):
-        (found,) = (each for each in tried if f"import {name}\n" in each)
+        (found,) = (item for item in tried if f"import {name}\n" in item)
         assert f"from smachac.runtime import {name}" in found
     module = ModuleType("program")
     with patch.dict("sys.modules", dict.fromkeys(("smach", "smach_ros"), None)):  # there is none

@@ -246,7 +246,7 @@ def test_a_container_and_a_base_see_what_the_script_says_of_them(built: Built) -
 def test_a_uuid_is_that_of_the_path_in_each_build(built: Built) -> None:
     said = ADDED.replace("smach.{{", "# uuid {{ uuid }}\nsmach.{{", 1)
     first = re.findall(r"# uuid (\w+)", built(T=CLASS + said))
-    assert [len(each) for each in first] == [32, 32]
+    assert [len(item) for item in first] == [32, 32]
     assert len({*first}) == 2
     assert re.findall(r"# uuid (\w+)", built(T=CLASS + said)) == first
     renamed = re.findall(
@@ -759,7 +759,7 @@ def test_a_class_is_believed_where_its_meta_block_differs(tmp_path: Path) -> Non
     assert [item.code for item in smachac.check(path) if item.code == "SM301"] == []
     type_ = find_state_type("T", disk_library(path, []), [])
     assert type_ is not None
-    assert [each.name for each in type_.outcomes] == ["succeeded", "preempted"]
+    assert [outcome.name for outcome in type_.outcomes] == ["succeeded", "preempted"]
 
 
 PLAIN = """\

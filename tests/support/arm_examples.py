@@ -133,6 +133,6 @@ def carry(robot: str, limb: str, seed: int) -> float:
                 arm.grip(command),
                 arm.move_along(where, hover),
             ]
-            outcomes += [each.outcome for each in moves]
+            outcomes += [move.outcome for move in moves]
         fine = set(outcomes) == {"succeeded"} and world.at_rest("block")
         return world.error("block", goal) if fine else math.nan

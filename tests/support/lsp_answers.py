@@ -35,4 +35,4 @@ def answers(session: Session, path: str, text: str, offset: int) -> list[Diagnos
             named = named_at(place, facts)
             if named is not None:
                 references(named, session.machines(path))
-    return in_order(item for each in session.check(path).values() for item in each)
+    return in_order(item for one in session.check(path).values() for item in one)

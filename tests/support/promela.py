@@ -51,8 +51,8 @@ class _Translation:
             self.paths.append(path)
         self.parent = [numbers.get(path.rpartition("/")[0], -1) for path in self.paths]
         self.below = [
-            [number for number, parent in enumerate(self.parent) if parent == each]
-            for each in range(len(self.nodes))
+            [number for number, parent in enumerate(self.parent) if parent == item]
+            for item in range(len(self.nodes))
         ]
         names = {name: None for node in self.nodes for name in outcome_names(node)}
         for node in self.nodes:
@@ -64,8 +64,8 @@ class _Translation:
 
     def subtree(self, number: int) -> list[int]:
         found = [number]
-        for each in found:
-            found += self.below[each]
+        for item in found:
+            found += self.below[item]
         return found
 
     def around(self, number: int) -> str:
@@ -86,8 +86,8 @@ class _Translation:
         yield ":: atomic { !quiet -> quiet = true; goto turn }"
         if self.given.stops:
             yield ":: atomic { !quiet ->"
-            for each in range(len(self.nodes)):
-                yield f"  if :: running[{each}] -> asked[{each}] = true :: else fi;"
+            for item in range(len(self.nodes)):
+                yield f"  if :: running[{item}] -> asked[{item}] = true :: else fi;"
             yield "  goto turn }"
         for number, node in enumerate(self.nodes):
             if isinstance(node, Leaf):
@@ -109,7 +109,7 @@ class _Translation:
 
     def leaf(self, number: int, node: Leaf) -> Iterator[str]:
         able = PREEMPTED in outcome_names(node)
-        caught = any(self.nodes[each].catches for each in self.upwards(number))
+        caught = any(self.nodes[upward].catches for upward in self.upwards(number))
         if able:
             yield f":: atomic {{ running[{number}] && asked[{number}] -> asked[{number}] = false;"
             yield f"  o = {self.codes[PREEMPTED]}; act = END; cur = {number}; goto settle }}"
@@ -136,14 +136,14 @@ class _Translation:
             case Leaf():
                 yield f"  {self.around(number)}"
             case StateMachine() | SequenceNode():
-                names = [self.nodes[each].name for each in below]
+                names = [self.nodes[item].name for item in below]
                 first = below[names.index(node.initial)]
                 yield f"  if :: asked[{number}] -> asked[{first}] = true :: else fi;"
                 yield f"  cur = {first}"
             case Concurrence():
-                for each in below:
-                    yield f"  if :: asked[{number}] -> asked[{each}] = true :: else fi;"
-                    yield f"  ended[{each}] = false;"
+                for item in below:
+                    yield f"  if :: asked[{number}] -> asked[{item}] = true :: else fi;"
+                    yield f"  ended[{item}] = false;"
                 yield f"  starting[{number}] = 0; stopping[{number}] = false; act = SETTLED"
             case IteratorNode():
                 assert node.items is not None
@@ -160,7 +160,7 @@ class _Translation:
                 yield "  act = END"
 
     def withdrawn(self, number: int) -> str:
-        return "; ".join(f"asked[{each}] = false" for each in self.subtree(number))
+        return "; ".join(f"asked[{item}] = false" for item in self.subtree(number))
 
     def renamed(self, node: IteratorNode, outcome: str) -> str:
         return dict(node.final_map).get(outcome, outcome)
@@ -199,7 +199,7 @@ class _Translation:
         self, number: int, parent: int, around: Node, withdraw: str, failed: str
     ) -> Iterator[str]:
         assert isinstance(around, StateMachine | SequenceNode)
-        names = {self.nodes[each].name: each for each in self.below[parent]}
+        names = {self.nodes[item].name: item for item in self.below[parent]}
         node = self.nodes[number]
         done = []
         for step in node.transitions:
@@ -249,9 +249,9 @@ class _Translation:
         stops = "true" if around.join == "any" else "o == ERR"
         yield f"  if :: !stopping[{parent}] && ({stops}) -> stopping[{parent}] = true;"
         yield f"    if :: !asked[{parent}] ->"
-        for each in self.below[parent]:
-            yield f"      if :: !ended[{each}] -> asked[{each}] = true;"
-            for inner in self.subtree(each):
+        for item in self.below[parent]:
+            yield f"      if :: !ended[{item}] -> asked[{item}] = true;"
+            for inner in self.subtree(item):
                 yield f"        if :: running[{inner}] -> asked[{inner}] = true :: else fi;"
             yield "      skip :: else fi;"
         yield "    skip :: else fi"
@@ -263,30 +263,30 @@ class _Translation:
         for at, each in enumerate(below):
             yield f"  :: starting[{number}] == {at} -> starting[{number}]++;"
             yield f"     act = ENTER; cur = {each}"
-        every = " && ".join(f"ended[{each}]" for each in below)
+        every = " && ".join(f"ended[{item}]" for item in below)
         all_started = f"starting[{number}] == {len(below)}"
         yield f"  :: {all_started} && !({every}) -> {self.around(number)}"
         yield f"  :: {all_started} && ({every}) ->"
         yield f"    stopped = {f'asked[{number}]' if node.sugar else 'false'}; held = false;"
-        for each in below:
-            yield f"    if :: asked[{each}] -> held = true; {self.withdrawn(each)} :: else fi;"
+        for item in below:
+            yield f"    if :: asked[{item}] -> held = true; {self.withdrawn(item)} :: else fi;"
         yield f"    if :: !held -> asked[{number}] = false :: else fi;"
-        failed = " || ".join(f"result[{each}] == ERR" for each in below)
+        failed = " || ".join(f"result[{item}] == ERR" for item in below)
         yield f"    if :: {failed} -> o = ERR"
         preempted = self.codes[PREEMPTED]
         yield f"    :: else -> if :: stopped -> asked[{number}] = false; o = {preempted} :: else ->"
-        names = {self.nodes[each].name: each for each in below}
+        names = {self.nodes[item].name: item for item in below}
         ranked = sorted(enumerate(node.rules), key=lambda pair: (len(pair[1].when), pair[0]))
         yield f"      o = {self.codes[node.default_outcome]};"
         for _, rule in ranked:
             when = " && ".join(
-                f"result[{names[each.child]}] == {self.codes.get(each.outcome, 254)}"
-                for each in rule.when
+                f"result[{names[item.child]}] == {self.codes.get(item.outcome, 254)}"
+                for item in rule.when
             )
             yield f"      if :: {when or 'true'} -> o = {self.codes[rule.outcome]} :: else fi;"
         yield "      skip fi fi;"
-        for each in below:
-            yield f"    ended[{each}] = false; result[{each}] = 0;"
+        for item in below:
+            yield f"    ended[{item}] = false; result[{item}] = 0;"
         yield f"    starting[{number}] = 0; stopping[{number}] = false; stopped = false;"
         yield "    held = false; act = END"
         yield "  fi"
@@ -332,7 +332,7 @@ class _Translation:
     def after(self, number: int, outcome: str | None, form: After) -> Iterator[str]:
         at = (self.paths[number], outcome)
         first, answer, claim = (
-            self.monitor.matches(each, at) for each in (form.first, form.answer, form.before_claim)
+            self.monitor.matches(item, at) for item in (form.first, form.answer, form.before_claim)
         )
         leaf = outcome is None and isinstance(self.nodes[number], Leaf) and form.within > 0
         if answer:
@@ -353,12 +353,12 @@ class _Translation:
 def promela(pairs: Sequence[tuple[Machine, Property]]) -> str:
     """A model with one proctype for each machine; the environment variable MACHINE chooses one."""
     made = [_Translation(number, *pair) for number, pair in enumerate(pairs)]
-    size = max(len(each.nodes) for each in made)
+    size = max(len(item.nodes) for item in made)
     lines = [HEAD.format(size=size)]
-    for each in made:
-        lines += each.text()
+    for item in made:
+        lines += item.text()
     lines.append('init { c_code { now.chosen = atoi(getenv("MACHINE")); }; if')
-    lines += [f":: chosen == {each.number} -> run machine_{each.number}()" for each in made]
+    lines += [f":: chosen == {item.number} -> run machine_{item.number}()" for item in made]
     lines.append("fi }")
     return "\n".join(lines) + "\n"
 

@@ -133,9 +133,9 @@ class _Drawing:
             chosen = self.rng.sample(children, self.rng.randint(1, len(children)))
             when = [
                 Condition(
-                    child=each.name, outcome=self.rng.choice(outcome_names(each)), span=NOWHERE
+                    child=item.name, outcome=self.rng.choice(outcome_names(item)), span=NOWHERE
                 )
-                for each in chosen
+                for item in chosen
             ]
             rules.append(
                 OutcomeRule(outcome=self.rng.choice(exits), when=tuple(when), span=NOWHERE)
@@ -160,12 +160,12 @@ class _Drawing:
             exits.append(PREEMPTED)
         child = self.node(depth - 1)
         names = outcome_names(child)
-        loops = [each for each in names if self.likely(0.5)]
+        loops = [item for item in names if self.likely(0.5)]
         final = [("exhausted", self.rng.choice(exits))]
         final += [
-            (each, self.rng.choice(exits))
-            for each in names
-            if each not in exits or self.likely(0.3)
+            (item, self.rng.choice(exits))
+            for item in names
+            if item not in exits or self.likely(0.3)
         ]
         return Iterator(
             name=name,
@@ -245,7 +245,9 @@ class Monitor:
                     return True
                 case "tag" if atom.name in node.tags:
                     return True
-                case "claim" if any(f"{each}.".startswith(f"{atom.name}.") for each in node.claims):
+                case "claim" if any(
+                    f"{claim}.".startswith(f"{atom.name}.") for claim in node.claims
+                ):
                     return True
         return False
 
@@ -262,7 +264,7 @@ class Monitor:
             case Before(later=later, earlier=earlier):
                 return self._never(events, (), earlier, later)
             case AtMost(event=event, times=times):
-                return sum(self.matches(event, each) for each in events) > times
+                return sum(self.matches(event, item) for item in events) > times
             case After():
                 return any(
                     self._unanswered(events[number + 1 :], self.form, ended=ended)
@@ -276,27 +278,27 @@ class Monitor:
         self, events: Sequence[tuple[str, str | None]], after: Atoms, until: Atoms, enter: Atoms
     ) -> bool:
         forbidden = not after
-        for each in events:
-            if forbidden and self.matches(until, each):
+        for event in events:
+            if forbidden and self.matches(until, event):
                 if not after:
                     return False
-                forbidden = self.matches(after, each)
-            elif forbidden and self.matches(enter, each):
+                forbidden = self.matches(after, event)
+            elif forbidden and self.matches(enter, event):
                 return True
             elif not forbidden:
-                forbidden = self.matches(after, each)
+                forbidden = self.matches(after, event)
         return False
 
     def _unanswered(
         self, rest: Sequence[tuple[str, str | None]], form: After, *, ended: bool
     ) -> bool:
         entered = 0
-        for each in rest:
-            if self.matches(form.answer, each):
+        for item in rest:
+            if self.matches(form.answer, item):
                 return False
-            if self.matches(form.before_claim, each):
+            if self.matches(form.before_claim, item):
                 return True
-            entered += each[1] is None and isinstance(self.nodes[each[0]], Leaf)
+            entered += item[1] is None and isinstance(self.nodes[item[0]], Leaf)
             if form.within and entered >= form.within:
                 return True
         return ended

@@ -109,7 +109,7 @@ def starter() -> Iterator[Callable[..., Viewed]]:
         return begun[-1]
 
     yield started
-    for each in begun:
-        each.close()
-        each.process.kill()
-        each.process.communicate()
+    for item in begun:
+        item.close()
+        item.process.kill()
+        item.process.communicate()

@@ -146,7 +146,7 @@ def test_the_histogram_has_axes_with_units_and_labels_are_whole() -> None:
             for seed in range(41)]  # fmt: skip
     page = summary_html(summary(*runs))
     drawn = ET.fromstring(page[page.index("<svg") : page.index("</svg>") + 6])
-    assert ["".join(each.itertext()) for each in drawn.iter("text")] == [
+    assert ["".join(item.itertext()) for item in drawn.iter("text")] == [
         *("0", "1", "3"), *("0 s", "10 s", "20 s", "30 s", "40 s"), "runs", "duration",
     ]  # fmt: skip
     assert name in page

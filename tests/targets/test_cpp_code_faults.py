@@ -127,7 +127,7 @@ def test_a_header_in_another_folder(files: dict[str, str], help: str | None) -> 
     given = {"main.yml": SCRIPT, "templates/Grasp.yml": INTERFACE, **files}
     report = analyse(Source("main.yml", SCRIPT), memory_library(given, BUILT_IN), []).report
     expected = [("SM608", "arm/grasp.hpp", help)] if help else []
-    assert [(each.code, each.span.text, each.help) for each in report] == expected
+    assert [(item.code, item.span.text, item.help) for item in report] == expected
 
 
 PUSH = """
@@ -189,7 +189,7 @@ def push_findings(*pairs: tuple[str, str]) -> list[str]:
         text = text.replace(old, new)
     files = {"main.yml": PUSH_SCRIPT, "templates/Push.yml": PUSH, "arm/push.hpp": text}
     report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
-    return [f"{each.code} {each.span.line} {each.span.text}: {each.help}" for each in report]
+    return [f"{item.code} {item.span.line} {item.span.text}: {item.help}" for item in report]
 
 
 @pytest.mark.parametrize(
@@ -313,9 +313,9 @@ def test_an_output_that_a_path_skips(code: str, marked: list[int]) -> None:
     interface = PUSH.replace("code:", "writes: {done: [force]}\ncode:")
     files = {"main.yml": PUSH_SCRIPT, "templates/Push.yml": interface, "arm/push.hpp": text}
     report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
-    found = [each for each in report if "without setting its output key" in each.message]
-    assert [each.span.line for each in found] == marked
-    assert all(each.span.text == "return Outcome::done" for each in found)
+    found = [item for item in report if "without setting its output key" in item.message]
+    assert [item.span.line for item in found] == marked
+    assert all(item.span.text == "return Outcome::done" for item in found)
 
 
 def test_the_declaration_of_a_field_is_in_the_help() -> None:
@@ -328,7 +328,7 @@ def test_a_misspelt_type_of_the_interface_is_one_finding() -> None:
     interface = PUSH.replace("depth: float", "depth: flaot")
     files = {"main.yml": PUSH_SCRIPT, "templates/Push.yml": interface, "arm/push.hpp": PUSH_CLASS}
     report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
-    assert [(each.code, each.span.text) for each in report] == [("SM017", "flaot")]
+    assert [(item.code, item.span.text) for item in report] == [("SM017", "flaot")]
 
 
 JUDGE = """
@@ -389,11 +389,11 @@ def test_a_return_before_an_output_that_is_read(
     text = text.replace(old, new) if old else text
     files = {"main.yml": script, "templates/Judge.yml": JUDGE, "arm/judge.hpp": text}
     report = analyse(Source("main.yml", script), memory_library(files, BUILT_IN), []).report
-    found = [each for each in report if each.code in ("SM604", "SM608", "SM609")]
-    assert [each.span.text for each in found] == ["return Outcome::outside"] * count
-    for each in found:
+    found = [item for item in report if item.code in ("SM604", "SM608", "SM609")]
+    assert [item.span.text for item in found] == ["return Outcome::outside"] * count
+    for item in found:
         assert (
-            "returns `Outcome::outside` here before its output key `worst` is set" in each.message
+            "returns `Outcome::outside` here before its output key `worst` is set" in item.message
         )
 
 
@@ -420,7 +420,7 @@ def test_a_header_whose_folder_is_missing(tmp_path: Path, place: str, help: str 
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text)
     report = analyse_script(tmp_path / "main.yml").report
-    assert [(each.code, each.help) for each in report] == ([("SM608", help)] if help else [])
+    assert [(item.code, item.help) for item in report] == ([("SM608", help)] if help else [])
 
 
 @pytest.mark.parametrize(
@@ -442,7 +442,7 @@ def test_an_assignment_that_is_too_late(value: str, help: str) -> None:
     interface = PUSH.replace("code:", "writes: {done: [force]}\ncode:")
     files = {"main.yml": PUSH_SCRIPT, "templates/Push.yml": interface, "arm/push.hpp": text}
     report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
-    (found,) = [each for each in report if "without setting its output key" in each.message]
+    (found,) = [item for item in report if "without setting its output key" in item.message]
     assert found.help is not None
     assert found.help.startswith(help)
 
@@ -474,9 +474,9 @@ def test_the_type_of_a_field_with_items(type_: str, field: str, wanted: str | No
     report = analyse(
         Source("main.yml", files["main.yml"]), memory_library(files, BUILT_IN), []
     ).report
-    found = [each.message + str(each.help) for each in report if "In::depth" in each.message]
+    found = [item.message + str(item.help) for item in report if "In::depth" in item.message]
     assert len(found) == (wanted is not None)
-    assert all(f"{wanted}depth" in each for each in found)
+    assert all(f"{wanted}depth" in item for item in found)
 
 
 @pytest.mark.parametrize(
@@ -494,7 +494,7 @@ def test_the_message_names_the_parameter_that_is_missing(old: str, new: str, wor
         "arm/push.hpp": PUSH_CLASS.replace(old, new),
     }
     report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
-    (found,) = [each for each in report if each.code == "SM609"]
+    (found,) = [item for item in report if item.code == "SM609"]
     assert found.message.startswith(f"`execute` of `arm::Push` {words}")
 
 
@@ -509,7 +509,7 @@ def test_the_field_of_a_new_key_is_in_the_help() -> None:
     interface = PUSH.replace("{force: float}", "{force: float, slip: 'list[float]'}")
     files = {"main.yml": PUSH_SCRIPT, "templates/Push.yml": interface, "arm/push.hpp": PUSH_CLASS}
     report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
-    (found,) = [each for each in report if each.code == "SM604"]
+    (found,) = [item for item in report if item.code == "SM604"]
     assert "write `smachac::Key<std::vector<double>> &slip;` in `Out`, then" in str(found.help)
 
 
@@ -517,5 +517,5 @@ def test_the_local_variable_that_is_meant() -> None:
     text = PUSH_CLASS.replace(SETS, "    const double force = arm_.now();\n" + "    log(force);\n")
     files = {"main.yml": PUSH_SCRIPT, "templates/Push.yml": PUSH, "arm/push.hpp": text}
     report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
-    (found,) = [each for each in report if "never sets its output key" in each.message]
+    (found,) = [item for item in report if "never sets its output key" in item.message]
     assert found.help == "write `out.force = force;` before the `return`"

@@ -79,7 +79,7 @@ def programs(
     library = library_of(folder)
     analysis = analyse(Source(name, text), library, [])
     if any(
-        each.severity.name == "ERROR" and FRONTEND.fullmatch(each.code) for each in analysis.report
+        item.severity.name == "ERROR" and FRONTEND.fullmatch(item.code) for item in analysis.report
     ):
         return None
     assert analysis.machine is not None
@@ -121,7 +121,7 @@ def script(type_: str, variables: dict[str, object]) -> str:
                 state[name] = VALUES.get(name, default if name == "action" else "word")
     if "outcomes" in interface.given:
         state["outcomes"] = ["succeeded"]
-    outcomes = [each.name for each in interface.outcomes] or ["succeeded"]
+    outcomes = [outcome.name for outcome in interface.outcomes] or ["succeeded"]
     state["transitions"] = dict.fromkeys(outcomes, "done")
     root = {"name": "sm", "template": base, "outcomes": ["done"]}
     if base == type_:

@@ -159,7 +159,7 @@ def test_every_edge_connects_states_of_one_container(machine: Machine) -> None:
         if isinstance(edge["target"], str):
             assert edge["target"] in container["children"]
         else:
-            names = [each["name"] for each in container["outcomes"]]
+            names = [item["name"] for item in container["outcomes"]]
             assert edge["target"]["outcome"] in names
         if edge["kind"] in ("written", "implicit", "connector"):
             key = edge["source"], edge["outcome"]
@@ -189,14 +189,14 @@ def test_model_of_an_example() -> None:
     analysis = analyse_script(ROOT / "examples/13_recovery/main.yml")
     assert analysis.machine is not None
     model = machine_model(analysis.machine, analysis.report)
-    node = next(each for each in model["nodes"] if each["badges"])
+    node = next(item for item in model["nodes"] if item["badges"])
     assert [part[:3] for part in node["parts"]] == [
         [f"{node['path']} (retry)", "retry", None],
         [node["path"], "state", "try"],
     ]
     (badge,) = node["badges"]
     assert badge["text"] == "3 tries"
-    leaf = next(each for each in model["nodes"] if each["kind"] == "leaf" and each["inputs"])
+    leaf = next(item for item in model["nodes"] if item["kind"] == "leaf" and item["inputs"])
     assert leaf["snippet"].lstrip("- ").startswith(leaf["name"])
     assert {"name", "key", "type", "doc"} == set(leaf["inputs"][0])
 
@@ -209,7 +209,7 @@ def test_properties_have_verdicts() -> None:
     assert analysis.machine is not None
     found = machine_model(analysis.machine)["properties"]
     assert found
-    assert {each["verdict"] for each in found} <= {
+    assert {item["verdict"] for item in found} <= {
         *("holds", "fails", "vacuous", "undecided", "unclear"),
     }
 

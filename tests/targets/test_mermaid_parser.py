@@ -83,7 +83,7 @@ def test_every_case_and_example() -> None:
     answers = parsed([path.read_text("utf-8") for path in GOLDEN])
     for path, each in zip(GOLDEN, answers, strict=True):
         assert "error" not in each, f"{path}: {each['error']}"
-    assert all(each["states"] and each["edges"] for each in answers)
+    assert all(answer["states"] and answer["edges"] for answer in answers)
 
 
 def test_random_machines() -> None:
@@ -119,8 +119,8 @@ def test_any_name() -> None:
     rng = random.Random(5)
     machines = []
     for name in ODD:
-        others = rng.sample([each for each in ODD if each != name], 3)
-        leaves: list[Leaf] = [leaf(each, *others[:1], **{name: name}) for each in [name, *others]]
+        others = rng.sample([item for item in ODD if item != name], 3)
+        leaves: list[Leaf] = [leaf(item, *others[:1], **{name: name}) for item in [name, *others]]
         inner = machine_of(name, (name,), *leaves)
         machines.append(Machine(root=machine_of(name, (name,), inner, *leaves[1:])))
     for machine, answer in zip(machines, parsed([*map(text_of, machines)]), strict=True):

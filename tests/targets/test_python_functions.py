@@ -61,7 +61,7 @@ def outline_of(text: str) -> str:
 def lines_of(value: Any, path: str, around: list[object]) -> Iterator[str]:
     """A line for each value below an object; objects that are around it are not repeated."""
     match value:
-        case _ if any(value is each for each in around):
+        case _ if any(value is item for item in around):
             yield f"{path}: as above"
         case dict():
             for key in value:
@@ -89,8 +89,8 @@ def lines_of(value: Any, path: str, around: list[object]) -> Iterator[str]:
 def functions_of(text: str) -> dict[str, ast.FunctionDef]:
     """The functions that build containers, by name."""
     tree = ast.parse(text)
-    found = [each for each in tree.body if isinstance(each, ast.FunctionDef)]
-    return {each.name: each for each in found if each.name.startswith("build")}
+    found = [statement for statement in tree.body if isinstance(statement, ast.FunctionDef)]
+    return {item.name: item for item in found if item.name.startswith("build")}
 
 
 def depth(node: ast.AST) -> int:
@@ -153,7 +153,7 @@ def _states(draw: random.Random, number: int, last: int, depth: int) -> list[dic
 def test_random_scripts_build_the_same_machine(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     analysis = analysis_of(random_files(seed))
     text = program(analysis)
-    assert all(depth(each) <= functions.MOST_NESTED for each in functions_of(text).values())
+    assert all(depth(item) <= functions.MOST_NESTED for item in functions_of(text).values())
     assert outline_of(text) == outline_of(in_one_function(analysis, monkeypatch))
 
 
@@ -161,8 +161,8 @@ def test_random_scripts_build_the_same_machine(seed: int, monkeypatch: pytest.Mo
 def test_random_scripts_share_functions() -> None:
     """The test above would not fail if there were none."""
     texts = [program(analysis_of(random_files(seed))) for seed in range(25)]
-    found = [each for text in texts for each in functions_of(text).values()]
-    assert sum(bool(each.args.args) for each in found) > 20
+    found = [item for text in texts for item in functions_of(text).values()]
+    assert sum(bool(item.args.args) for item in found) > 20
     passed_on = [text for text in texts if re.search(r"build_\w+\([^)]*(\w+)=\1\b", text)]
     assert len(passed_on) > 1
 
@@ -235,8 +235,8 @@ STEP = "[{outcome: done, set: {n: [params, %s]}}]"
 def heads(text: str) -> list[str]:
     """The functions with their parameters."""
     return [
-        f"{each.name}({', '.join(arg.arg for arg in each.args.args)})"
-        for each in functions_of(text).values()
+        f"{item.name}({', '.join(arg.arg for arg in item.args.args)})"
+        for item in functions_of(text).values()
     ]
 
 

@@ -140,7 +140,7 @@ def test_harm_ends_in_an_error_at_its_line(harm: str, tmp_path: Path) -> None:
     assert words in found.finding.message
     assert found.span.source.name.endswith("Bad.tpl.py")
     assert found.span.line == 2
-    assert [each.span.text for each in found.finding.related] == ["A"]
+    assert [item.span.text for item in found.finding.related] == ["A"]
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ def texts_by_hand() -> Iterator[tuple[str, dict[str, str]]]:
             if here.name.startswith("bad_") or here.name == ALLOWED:
                 continue
             shared = [
-                path for each in find_project(main, []).scripts for path in each.glob("*.yml")
+                path for script in find_project(main, []).scripts for path in script.glob("*.yml")
             ]
             paths = sorted(path for path in shared if path.name != MAIN)
             paths += [*sorted(here.glob("*.yml")), *sorted(here.glob("templates/*"))]

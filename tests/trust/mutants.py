@@ -145,7 +145,7 @@ def judge(subject: Subject, mutant: Mutant) -> Verdict:
         line_of(span) in right
         for item in analysis.report
         if item.code in mutant.codes
-        for span in (item.span, *(each.span for each in item.finding.related if others))
+        for span in (item.span, *(one.span for one in item.finding.related if others))
     )
     judgement: Judgement = "caught" if caught else "missed"
     reason = ""

@@ -96,7 +96,9 @@ def return_nothing(subject: Subject) -> Mutant | None:
 @mutation
 def set_no_output(subject: Subject) -> Mutant | None:
     mutant = changed(subject, "userdata[", None, "SM314", "def execute")
-    held = [each for each in interfaces(subject.project).values() if "writes" in each]
+    held = [
+        interface for interface in interfaces(subject.project).values() if "writes" in interface
+    ]
     if mutant is None or not held:
         return mutant
     (place,) = mutant.lines

@@ -105,7 +105,7 @@ def covered(node: Concurrence) -> bool:
     """Whether the rules speak of every combination of outcomes."""
     ends = [[(child.name, name) for name in outcome_names(child)] for child in node.children]
     return all(
-        any(all((each.child, each.outcome) in ended for each in rule.when) for rule in node.rules)
+        any(all((item.child, item.outcome) in ended for item in rule.when) for rule in node.rules)
         for ended in itertools.product(*ends)
     )
 

@@ -38,7 +38,7 @@ def is_read_beside(site: Site, key: str) -> bool:
     outer = site.pairs("remapping").get(key, key)
     for other in site.siblings():
         remaps = other.pairs("remapping")
-        reads = {remaps.get(each, each) for each in other.keys("input_keys")}
+        reads = {remaps.get(item, item) for item in other.keys("input_keys")}
         if other.name != site.name and outer in reads | set(remaps.values()):
             return True
     return False
@@ -156,7 +156,7 @@ def family(type_: str) -> str:
 
 
 def other_type(subject: Subject, type_: str) -> Quoted:
-    return Quoted(subject.draw.choice([each for each in FAMILIES if family(each) != family(type_)]))
+    return Quoted(subject.draw.choice([item for item in FAMILIES if family(item) != family(type_)]))
 
 
 def typed_presets(subject: Subject) -> list[tuple[Site, str, dict[str, Data]]]:
@@ -198,8 +198,8 @@ def give_a_preset_a_wrong_literal(subject: Subject) -> Mutant | None:
 
 @mutation
 def change_the_length_of_a_literal(subject: Subject) -> Mutant | None:
-    found = [each for each in typed_presets(subject) if str(each[2]["type"]).endswith("]")]
-    found = [each for each in found if "[3]" in str(each[2]["type"])]
+    found = [item for item in typed_presets(subject) if str(item[2]["type"]).endswith("]")]
+    found = [item for item in found if "[3]" in str(item[2]["type"])]
     if not found:
         return None
     site, key, preset = subject.draw.choice(found)
@@ -214,7 +214,7 @@ def change_the_length_of_a_literal(subject: Subject) -> Mutant | None:
 def write_another_unit(subject: Subject) -> Mutant | None:
     """The preset says degrees, or another unit of length, where somebody reads a unit."""
     units = {"float<m>": "float<mm>", "float<rad>": "float<deg>"}
-    found = [each for each in typed_presets(subject) if str(each[2]["type"]) in units]
+    found = [item for item in typed_presets(subject) if str(item[2]["type"]) in units]
     found = [(s, k, p) for s, k, p in found if readers_with_types(subject, s, k)]
     if not found:
         return None
@@ -232,13 +232,13 @@ def readers_with_types(subject: Subject, site: Site, key: str) -> list[tuple[Sit
     for child in site.states():
         node = subject.node(child)
         remaps = child.pairs("remapping")
-        for each in node.inputs if node is not None else ():
+        for item in node.inputs if node is not None else ():
             if (
-                remaps.get(each.name, each.name) == key
-                and each.type.args
-                and str(each.type) != "any"
+                remaps.get(item.name, item.name) == key
+                and item.type.args
+                and str(item.type) != "any"
             ):
-                found.append((child, each.name))
+                found.append((child, item.name))
     return found
 
 
@@ -292,7 +292,7 @@ def swap_the_type_of_an_output(subject: Subject) -> Mutant | None:
 
 @mutation
 def bend_a_rotation(subject: Subject) -> Mutant | None:
-    found = [each for each in typed_presets(subject) if each[2]["type"] == "Pose"]
+    found = [item for item in typed_presets(subject) if item[2]["type"] == "Pose"]
     if not found:
         return None
     site, key, preset = subject.draw.choice(found)

@@ -256,9 +256,9 @@ def put_two_states_into_a_sub_script(subject: Subject) -> Mutant | None:
     subject.project[file].append({"ANOTHER": {"template": "ScriptedState", "outcomes": ["done"]}})
     places: list[Place] = [(file, ()), (file, (1,))]
     places += [
-        (each.file, (*each.path, "script"))
-        for each in callers
-        if each.body["script"] == site.body["script"]
+        (caller.file, (*caller.path, "script"))
+        for caller in callers
+        if caller.body["script"] == site.body["script"]
     ]
     return Mutant(codes=("SM014",), places=tuple(places))
 
@@ -268,23 +268,23 @@ def look_ups(
 ) -> list[tuple[list[Data], tuple[str | int, ...]]]:
     """The lists that are look-ups, with the place of each: [params, x] and [[x]]."""
     if isinstance(data, dict):
-        return [each for key, value in data.items() for each in look_ups(value, (*steps, key))]
+        return [item for key, value in data.items() for item in look_ups(value, (*steps, key))]
     if not isinstance(data, list):
         return []
     if len(data) == 2 and data[0] == "params" and not isinstance(data[0], Quoted):
         return [(data, (*steps, 1))]
     if len(data) == 1 and isinstance(data[0], list) and len(data[0]) == 1:
         return [(data[0], (*steps, 0, 0))] if type(data[0][0]) is str else []
-    return [each for at, value in enumerate(data) for each in look_ups(value, (*steps, at))]
+    return [item for at, value in enumerate(data) for item in look_ups(value, (*steps, at))]
 
 
 @mutation
 def misspell_a_look_up(subject: Subject) -> Mutant | None:
     found = [
-        (file, *each)
+        (file, *item)
         for file, data in subject.project.items()
         if "/" not in file
-        for each in look_ups(data)
+        for item in look_ups(data)
     ]
     if not found:
         return None
@@ -338,7 +338,7 @@ def write_a_key_twice(subject: Subject) -> Mutant | None:
 
 @mutation
 def indent_with_a_tab(subject: Subject) -> Mutant | None:
-    found = [each for each in entries(subject, "outcomes", "transitions") if each[0].path]
+    found = [entry for entry in entries(subject, "outcomes", "transitions") if entry[0].path]
     if not found:
         return None
     site, name = subject.draw.choice(found)

@@ -30,7 +30,7 @@ def led(site: Site, target: str, *codes: str) -> Mutant:
 
 def leads_back(site: Site) -> bool:
     """Whether a transition leads to a state that stands before this one."""
-    names = [each.name for each in site.siblings()]
+    names = [sibling.name for sibling in site.siblings()]
     earlier = names[: names.index(site.name)] if site.name in names else []
     return any(target in earlier for target in site.pairs("transitions").values())
 
@@ -75,7 +75,9 @@ def make_a_race_need_both(subject: Subject) -> Mutant | None:
     site, leaves = subject.draw.choice(found)
     site.body["join"] = "any"
     outcome = next(iter(site.keys("outcomes")))
-    site.body["outcome_map"] = {outcome: {each.name: outcome_names(each)[0] for each in leaves[:2]}}
+    site.body["outcome_map"] = {
+        outcome: {leave.name: outcome_names(leave)[0] for leave in leaves[:2]}
+    }
     return Mutant(codes=("SM403",), places=((site.file, (*site.path, "outcome_map", outcome)),))
 
 
@@ -188,7 +190,7 @@ def leave_a_counter_at_its_limit(subject: Subject) -> Mutant | None:
     found = [
         (site, outcome)
         for site, outcome in transitions(subject, "StateMachine")
-        if site.pairs("transitions")[outcome] in [each.name for each in site.siblings()]
+        if site.pairs("transitions")[outcome] in [sibling.name for sibling in site.siblings()]
         if outcome != PREEMPTED
     ]
     if not found:

@@ -75,7 +75,7 @@ def name_an_arm_that_the_robot_lacks(subject: Subject) -> Mutant | None:
 
 @mutation
 def write_degrees(subject: Subject) -> Mutant | None:
-    found = [each for each in typed_presets(subject) if each[2]["type"] == "float<rad>[3]"]
+    found = [preset for preset in typed_presets(subject) if preset[2]["type"] == "float<rad>[3]"]
     return of_preset(subject, found, [0, -45, 90], "SM522")
 
 
@@ -83,7 +83,7 @@ def write_degrees(subject: Subject) -> Mutant | None:
 def write_decimal_commas(subject: Subject) -> Mutant | None:
     """YAML reads two numbers in place of each."""
     sizes = ("float<rad>[3]", "Pose")
-    found = [each for each in typed_presets(subject) if each[2]["type"] in sizes]
+    found = [preset for preset in typed_presets(subject) if preset[2]["type"] in sizes]
     return of_preset(subject, found, [0, 5, 0, 0, 0, 1], "SM501", "SM304")
 
 

@@ -79,8 +79,10 @@ def assign_in_a_condition(subject: Subject) -> Mutant | None:
     def assigning(body: str) -> str:
         return re.sub(r"==|[<>]", "=", f"lambda ud: {body}", count=1)
 
-    found = [each for each in lambdas(subject, "ConditionalOutcomeState") if "ud." in each[2]]
-    found = [each for each in found if re.search(r"==|[<>](?!=)", each[2])]
+    found = [
+        lambda_ for lambda_ in lambdas(subject, "ConditionalOutcomeState") if "ud." in lambda_[2]
+    ]
+    found = [item for item in found if re.search(r"==|[<>](?!=)", item[2])]
     if not found:
         return None
     site, name, body = subject.draw.choice(found)

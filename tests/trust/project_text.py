@@ -18,7 +18,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import Analysis, analyse
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
-from smachac.frontend.text.yaml_mends import parse_mended
+from smachac.frontend.text.yaml_recovery import parse_with_recovery
 from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree, parse
 
 ROOT = Path(__file__).parents[2]
@@ -52,8 +52,8 @@ def _plain(tree: Tree) -> Data:
             return [_plain(item) for item in items]
         case Map(entries=entries):
             found: dict[Data, Data] = {}
-            for each in entries:
-                found.setdefault(_plain(each.key), _plain(each.value))
+            for entry in entries:
+                found.setdefault(_plain(entry.key), _plain(entry.value))
             return found
 
 
@@ -127,7 +127,7 @@ def texts(project: Project) -> dict[str, Written]:
 def analysed(files: Mapping[str, str]) -> Analysis:
     """What smachac says of a project, with nothing on a disk but the built-in state types. As for
     files on a disk, lost signs and wrong indentations are repaired."""
-    library = replace(memory_library(files, BUILT_IN), parse=parse_mended)
+    library = replace(memory_library(files, BUILT_IN), parse=parse_with_recovery)
     return analyse(Source(MAIN, files[MAIN]), library, [])
 
 

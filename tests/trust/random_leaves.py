@@ -93,7 +93,7 @@ class Leaves:
         return key, type_
 
     def scripted(self, name: str, depth: int, known: Known) -> State:
-        outcomes = [GOOD, *(each for each in (BAD, "skipped") if self.chance(0.5))]
+        outcomes = [GOOD, *(item for item in (BAD, "skipped") if self.chance(0.5))]
         body: Body = {"template": "ScriptedState", "outcomes": outcomes}
         state = State(name, body, {outcome: {} for outcome in outcomes})
         reads = self.given(known)

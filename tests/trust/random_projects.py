@@ -57,7 +57,7 @@ class Builder(Leaves):
                     target = following if following not in (None, *recoveries) else GOOD
                     target = exits[1] if name in recoveries else target
                 elif outcome == "skipped":
-                    ahead = [each for each in queue if each not in recoveries]
+                    ahead = [item for item in queue if item not in recoveries]
                     target = self.draw.choice([*ahead, GOOD])
                 elif name not in recoveries and self.may_recover(depth, inside):
                     target = self.state_name()
@@ -232,7 +232,7 @@ def common(arriving: list[Known]) -> Known:
     if not arriving:
         return {}
     first, *others = arriving
-    return {key: type_ for key, type_ in first.items() if all(key in each for each in others)}
+    return {key: type_ for key, type_ in first.items() if all(key in other for other in others)}
 
 
 def correct_project(seed: int) -> Project:

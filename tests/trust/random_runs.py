@@ -122,10 +122,10 @@ def contradictions(machine: Machine, report: Report, events: list[Event]) -> Ite
     if any(item.code == "SM106" for item in report):
         return
     around = {path for path, _ in containers(machine.root)}
-    entered = {each["path"] for each in events if each["event"] == "enter"}
+    entered = {event["path"] for event in events if event["event"] == "enter"}
     catching = {(path, node.catches) for path, node in walk(machine.root) if node.catches}
-    events = [each for each in events if (each["path"], each.get("outcome")) not in catching]
-    ended = {each["path"] for each in events if each["event"] == "exit"}
+    events = [event for event in events if (event["path"], event.get("outcome")) not in catching]
+    ended = {event["path"] for event in events if event["event"] == "exit"}
     for item in report:
         path = item.finding.node or ""
         match item.code:
@@ -143,11 +143,11 @@ def ends_after(events: list[Event], path: str) -> bool:
     """Whether the container of a state ends in the visit in which the state was entered."""
     around = path.rpartition("/")[0]
     inside = False
-    for each in events:
-        if each["path"] == path and each["event"] == "enter":
+    for event in events:
+        if event["path"] == path and event["event"] == "enter":
             inside = True
-        if each["path"] == around and each["event"] == "enter":
+        if event["path"] == around and event["event"] == "enter":
             inside = False
-        if each["path"] == around and each["event"] in ("exit", "finish") and inside:
+        if event["path"] == around and event["event"] in ("exit", "finish") and inside:
             return True
     return False

@@ -72,18 +72,18 @@ def failures(machine: Machine, report: Report, count: int) -> list[str]:
     """What goes wrong in so many runs, and what of the report they contradict."""
     found: list[str | None] = []
     for result, events in runs(machine, count):
-        asked = any(each["event"] == "preempt" for each in events)
+        asked = any(item["event"] == "preempt" for item in events)
         found.append(fault(machine, report, result, asked))
         found += contradictions(machine, report, events)
-    return [each for each in found if each is not None]
+    return [item for item in found if item is not None]
 
 
 def told_wrong(machine: Machine, report: Report, count: int = RUNS) -> list[str]:
     """What runs contradict of the report on a machine with errors."""
     return [
-        each
+        contradiction
         for _, events in runs(machine, count)
-        for each in contradictions(machine, report, events)
+        for contradiction in contradictions(machine, report, events)
     ]
 
 
@@ -173,9 +173,9 @@ def test_what_is_said_holds_where_states_fail_and_catch(drawn: tuple[Machine, ob
     events: list[Event] = []
     run(machine, builtin_behaviour(), events.append, max_steps=300)
     assert list(contradictions(machine, report, events)) == []
-    missing = [each for each in events if "holds nothing" in each.get("message", "")]
+    missing = [one for one in events if "holds nothing" in one.get("message", "")]
     told = {item.code for item in report} & {"SM301", "SM303", "SM307"}
-    event("caught" if any(each.get("outcome") == "error" for each in events) else "quiet")
+    event("caught" if any(one.get("outcome") == "error" for one in events) else "quiet")
     assert told or not missing
 
 
@@ -201,5 +201,5 @@ def test_a_fault_would_be_found() -> None:
             MUTATIONS[name](damaged)
             machine = judged(damaged.project).machine
             if machine is not None:
-                kinds |= {each.split(":")[0] for each in failures(machine, [], 3)}
+                kinds |= {failure.split(":")[0] for failure in failures(machine, [], 3)}
     assert kinds >= wanted

@@ -69,10 +69,10 @@ def assert_repaired(item: Diagnostic, found: JudgedRepair) -> None:
 
 def test_most_damage_gives_one_finding_that_names_what_was_lost() -> None:
     """All kinds in one test: of some, as of two swapped values, few can be decided."""
-    reported = [each for kind in TEXT_MUTATIONS for each in found(kind, QUICK) if each.findings]
+    reported = [item for kind in TEXT_MUTATIONS for item in found(kind, QUICK) if item.findings]
     assert len(reported) > 80
-    single = sum(len(each.findings) == 1 for each in reported)
-    named = sum(each.named for each in reported)
+    single = sum(len(item.findings) == 1 for item in reported)
+    named = sum(item.named for item in reported)
     assert single >= LEAST_SINGLE * len(reported)
     assert named >= LEAST_NAMED * len(reported)
 

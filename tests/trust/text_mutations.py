@@ -76,7 +76,7 @@ def case_of(name: str) -> str:
 @text_mutation
 def misspell_a_name(text: str, draw: random.Random) -> TextMutant | None:
     """Leave a letter out, turn two round, or write one twice."""
-    found = [each for each in names(text) if len(each.group()) > 3]
+    found = [name for name in names(text) if len(name.group()) > 3]
     if not found:
         return None
     place = draw.choice(found)
@@ -111,7 +111,7 @@ def write_another_name(text: str, draw: random.Random) -> TextMutant | None:
         return None
     place = draw.choice(found)
     kind = case_of(place.group())
-    others = sorted({each.group() for each in found if case_of(each.group()) == kind})
+    others = sorted({item.group() for item in found if case_of(item.group()) == kind})
     return replaced(text, place.span(), draw.choice(others), [place.group()])
 
 

@@ -17,8 +17,8 @@ def files_in(text: str) -> dict[str, str]:
     """The files of a project by name, with their texts."""
     first, *others = text.split("\n# --- ")
     files = {MAIN: first + "\n"}
-    for each in others:
-        name, _, content = each.partition("\n")
+    for other in others:
+        name, _, content = other.partition("\n")
         files[name] = content + "\n"
     return files
 

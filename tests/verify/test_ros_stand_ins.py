@@ -20,7 +20,7 @@ def test_every_ros_state_is_played(name: str, capsys: pytest.CaptureFixture[str]
     assert main(["verify", script, "--paths", "40", "--targets", "python"]) == 0
     assert capsys.readouterr().out.endswith("python: agrees\n")
     left = set(sys.modules) - set(before)
-    assert not [each for each in left if each.startswith(("rospy", "rclpy", "smach_ros"))]
+    assert not [item for item in left if item.startswith(("rospy", "rclpy", "smach_ros"))]
 
 
 @pytest.mark.parametrize("name", ["ros_1", "ros_2"])

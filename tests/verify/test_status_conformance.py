@@ -89,7 +89,7 @@ def reason(lines: tuple[str, ...] | list[str]) -> tuple[int, str]:
 def test_a_run_is_allowed_and_covers_its_transitions() -> None:
     trace, taken = judged(RUN)
     assert (trace.fault, trace.events, trace.outcome) == (None, len(RUN), "done")
-    found = {f"{each.path} {each.outcome} {each.target}" for each in taken.covered}
+    found = {f"{item.path} {item.outcome} {item.target}" for item in taken.covered}
     assert found == {
         "sm/FIND/LOOK seen sm/FIND/GO", "sm/FIND/GO ok sm/FIND:found", "sm/FIND found sm/BOTH",
         "sm/BOTH all sm/TRY", "sm/BOTH all sm/BOTH:all", "sm/TRY ok sm:done",
@@ -157,7 +157,9 @@ def test_the_outcome_is_in_the_info(info: str, outcome: str | None, complete: bo
 
 
 def test_of_statuses_without_starts_and_ends_the_names_are_judged() -> None:
-    found = [each._replace(complete=False) for each in statuses(["sm BOTH", "sm FIND", "sm HIDE"])]
+    found = [
+        status._replace(complete=False) for status in statuses(["sm BOTH", "sm FIND", "sm HIDE"])
+    ]
     fault = judge_statuses(machine(), "bag", found, Coverage(machine()), written(machine())).fault
     assert fault is not None
     assert fault[:2] == (3, "the script has no state `sm/HIDE`")

@@ -28,10 +28,10 @@ from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.class_facts import ANY, ClassFacts, Ending
-from smachac.ir.code_places import python_tree
 from smachac.ir.code_slips import texts_of
 from smachac.ir.nodes import Leaf
 from smachac.ir.outcome_names import PREEMPTED, fails, is_failure
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import outcome_names
 
 
@@ -117,7 +117,7 @@ def _wrong_returns(
         if word.text not in outcomes and not again:
             does = "can return" if ending.possible else "returns"
             near = f"write `{ending.meant}`" if ending.meant is not None else None
-            near = near or did_you_mean(_meant(leaf, word.text, guess))
+            near = near or did_you_mean(_suggested(leaf, word.text, guess))
             near = near or _without_tuple(word.text, outcomes)
             if ending.silent:
                 near = f"end each path of `{ending.silent}` with a `return`; {known}"
@@ -221,7 +221,7 @@ def _hooks(facts: ClassFacts) -> str:
 def _text_alone(facts: ClassFacts, outcomes: Collection[str]) -> tuple[str, ...]:
     """The outcomes that the last line of `execute` has without `return`: one, or a choice."""
     end = facts.open_end
-    tree = python_tree(end.span.text) if end is not None and end.text == "text" else None
+    tree = script_code(end.span.text).tree if end is not None and end.text == "text" else None
     found = texts_of(tree) if tree is not None else ()
     return found if {*found} <= {*outcomes} else ()
 
@@ -264,9 +264,9 @@ def _or_declare(ending: Ending, leaf: Leaf) -> str:
     return f", or add `{word.text}` to the outcomes of `{leaf.type}` in {where}"
 
 
-def _meant(leaf: Leaf, word: str, guess: Guesser) -> str | None:
+def _suggested(leaf: Leaf, word: str, guess: Guesser) -> str | None:
     """The outcome that was probably meant: a failure for the name of a failure."""
-    near = guess.sure(word)
+    near = guess.unique_match(word)
     if near is not None:
         return near
     near = guess(word)
@@ -378,7 +378,9 @@ def never_returned(context: Context) -> Iterator[Finding]:
         declared = names if facts.outcomes is None else [word.text for word in facts.outcomes]
         wrong = returned.difference(names)  # SM309: probably one of the others was meant
         guess = guesser(names)
-        returned.update(near for word in wrong if (near := _meant(leaf, word, guess)) == PREEMPTED)
+        returned.update(
+            near for word in wrong if (near := _suggested(leaf, word, guess)) == PREEMPTED
+        )
         only_stops = type_.prints_itself or wrong
         for name in names:
             checked = name == PREEMPTED or not only_stops

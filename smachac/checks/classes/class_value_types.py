@@ -10,7 +10,7 @@ from functools import reduce
 
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import FaultKind, expression_faults
-from smachac.analysis.expression_types import parsed, type_of_data
+from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.fixed_lists import lacks_entry
 from smachac.analysis.type_lattice import (
     BOOL,
@@ -18,7 +18,7 @@ from smachac.analysis.type_lattice import (
     STR,
     fields,
     inside,
-    is_open,
+    is_unknown,
     length_of,
     mapping,
     misfit,
@@ -36,6 +36,7 @@ from smachac.ir.class_facts import Part, Step, TableLookUp
 from smachac.ir.expressions import Binary, Call, Compare
 from smachac.ir.nodes import Data, Key, Leaf, Struct
 from smachac.ir.python_code import parse_code
+from smachac.ir.script_code import script_code
 from smachac.ir.types import ANY, Type
 
 MOST_ITEMS = 20
@@ -214,7 +215,7 @@ def wrong_loops(context: Context) -> Iterator[Finding]:
                     related=other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
                     node=path,
                 )
-            elif is_open(declared) and number:
+            elif is_unknown(declared) and number:
                 yield Finding(
                     span=set_[name].span,
                     message=f"`{name}` of `{leaf.name}` is {value}, but `{leaf.type}` loops over"
@@ -237,7 +238,7 @@ def wrong_operations(context: Context, kind: FaultKind) -> Iterator[Finding]:
         types = {key.name: key.type for key in type_.input_keys}
         lists = {name for name, type_ in types.items() if present(type_).name in ("list", "array")}
         for word in facts.operations:
-            tree = parsed(word.text)
+            tree = script_code(word.text).portable
             found = (
                 expression_faults(tree, mapping(types.items()), (facts.userdata,)) if tree else ()
             )
@@ -401,7 +402,7 @@ def wrong_parts(context: Context) -> Iterator[Finding]:
         keys = {key.name: key for key in type_.input_keys}
         for part in facts.parts:
             key = keys.get(part.key)
-            if key is not None and is_open(key.type):
+            if key is not None and is_unknown(key.type):
                 yield from _missing_entry(context, path, leaf, key, part)
                 continue
             fault = _wrong_part(key.type, part) if key is not None else None
@@ -471,7 +472,7 @@ def _wrong_part(type_: Type, part: Part) -> tuple[str, str] | None:
             return _wrong_attribute(owner, last, _owner_text(part), which)
         case "item", str() if owner.name == "record" and last not in fields(owner):
             names = list(fields(owner))
-            meant = did_you_mean(_meant_field(owner, last))
+            meant = did_you_mean(_suggested_field(owner, last))
             return f"{which} has no field `{last}`", meant or _one_of(names)
         case "names", int():
             size = length_of(owner)
@@ -516,14 +517,14 @@ def _attribute_of_record(type_: Type, name: str, owner: str, which: str) -> tupl
     if hasattr(dict, name):
         return None
     names = list(fields(type_))
-    meant = name if name in names else _meant_field(type_, name)
+    meant = name if name in names else _suggested_field(type_, name)
     what = f"{which} is a dictionary: it has no attribute `{name}`"
     if meant is None:
         return what, _one_of(names)
     return what, f'write `{owner}["{meant}"]`'
 
 
-def _meant_field(record: Type, name: str) -> str | None:
+def _suggested_field(record: Type, name: str) -> str | None:
     """The field of a record that is meant by an unknown one: the nearest, or the only one whose
     type has the name, as the field `at` of type `Pose` for `pose`."""
     names = list(fields(record))
@@ -576,7 +577,7 @@ def type_of_code(text: str) -> Type | None:
         type_ = _type_of_node(node)
     except (ValueError, TypeError, RecursionError, MemoryError):
         return None
-    return None if is_open(type_) else type_
+    return None if is_unknown(type_) else type_
 
 
 def _type_of_node(node: ast.expr) -> Type:

@@ -19,7 +19,7 @@ from smachac.pysource.user_code import Declared, Difference, StateClass, Words
     "SM603",
     "interfaces-differ",
     Severity.ERROR,
-    firm=True,
+    unsuppressible=True,
     effect="the robot runs the class, not the interface: SMACH can stop the machine with an error",
 )
 def interfaces_differ(context: Context) -> Iterator[Finding]:
@@ -85,7 +85,7 @@ def interfaces_differ(context: Context) -> Iterator[Finding]:
     "SM604",
     "stale-code",
     Severity.ERROR,
-    firm=True,
+    unsuppressible=True,
     effect="a C++ compiler refuses the class: it has the number of another interface",
 )
 def stale_code(context: Context) -> Iterator[Finding]:

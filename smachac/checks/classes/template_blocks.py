@@ -86,7 +86,7 @@ def _tests(of: TemplateBody) -> Iterator[Finding]:
             continue
         used = {word for start, end in tags(inside, "%{")
                 for word in _WORD.findall(inside[start + 2 : end - 2])}  # fmt: skip
-        near = guesser(sorted(used)).sure(name)
+        near = guesser(sorted(used)).unique_match(name)
         if near is not None:
             message = f"`{name}` is tested here, but nothing defines it: the part is never printed"
             place = Span(template, *found.span(1))

@@ -19,7 +19,7 @@ from smachac.pysource.user_code import StateFault
     "SM608",
     "code-not-found",
     Severity.ERROR,
-    firm=True,
+    unsuppressible=True,
     effect="Python raises ImportError: the program stops when it starts",
 )
 def code_not_found(context: Context) -> Iterator[Finding]:
@@ -102,7 +102,7 @@ def _template_imports(context: Context) -> Iterator[Finding]:
     "SM609",
     "unusable-class",
     Severity.ERROR,
-    firm=True,
+    unsuppressible=True,
     effect="the generated program stops with an error when it makes the state or runs it",
 )
 def unusable_class(context: Context) -> Iterator[Finding]:

@@ -6,11 +6,9 @@ import ast
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from smachac.analysis.accesses import USERDATA
 from smachac.analysis.code_slots import (
     CodeSlot,
     accepts,
-    free_names,
     is_value,
     means,
     parameters,
@@ -37,7 +35,7 @@ from smachac.checks.code.function_results import (
 from smachac.checks.code.outcome_results import wrong_outcomes
 from smachac.checks.help_text import calls, in_quotes_for, other_place
 from smachac.checks.rule import rule
-from smachac.checks.types.number_help import number_meant
+from smachac.checks.types.number_help import suggested_number
 from smachac.checks.types.type_origins import written
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Edit
@@ -47,6 +45,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import node_place, node_range, place_in
 from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.nodes import Expression, Node, VariableRole
+from smachac.ir.script_code import USERDATA, free_names
 from smachac.ir.types import ANY, Type
 
 
@@ -554,7 +553,7 @@ def _number_help(presets: list[TypeFlow]) -> str:
     """The help for a duration that is no number: the number, where a text of the script was meant
     as one."""
     texts = (preset.value for preset in presets if isinstance(preset.value, str))
-    meant = (number_meant(text, SECONDS) for text in texts)
+    meant = (suggested_number(text, SECONDS) for text in texts)
     found = next((help for help in meant if help is not None), None)
     return found or "return a number, for example with `float(...)`"
 

@@ -24,10 +24,11 @@ from smachac.checks.userdata.null_keys import null_keys
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.spelling import in_quotes
-from smachac.ir.code_places import node_range, place_in, python_tree
+from smachac.ir.code_places import node_range, place_in
 from smachac.ir.code_slips import Slip, corrected, slips
 from smachac.ir.leaf import functions
 from smachac.ir.nodes import Data, Expression, Leaf, Node, Struct
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import expressions, values
 
 
@@ -35,7 +36,7 @@ from smachac.ir.traversal import expressions, values
     "SM016",
     "bad-expression",
     Severity.ERROR,
-    firm=True,
+    unsuppressible=True,
     effect="Python cannot start a program with this code, so no program is generated",
 )
 def bad_expression(context: Context) -> Iterator[Finding]:
@@ -103,7 +104,7 @@ def _bare_comprehensions(path: str, node: Node) -> Iterator[Finding]:
         data = value.data
         if isinstance(data, tuple | Struct) and _has_loop(data):
             text = " ".join(value.span.text.split())
-            if _is_comprehension(python_tree(text)):
+            if _is_comprehension(script_code(text).tree):
                 what = "a list" if isinstance(data, tuple) else "a mapping"
                 yield Finding(
                     span=value.span,
@@ -142,7 +143,7 @@ def _is_comprehension(tree: ast.expr | None) -> bool:
 
 def _slips(text: str, compares: bool) -> list[Slip]:
     """The reasons why code cannot be an expression of a script; none if it can."""
-    tree = python_tree(text)
+    tree = script_code(text).tree
     if tree is None:
         return slips(text, compares=compares)
     if "yield" in text or "await" in text:

@@ -88,7 +88,7 @@ def fault_finding(
         node=site.path,
         severity=severity,
         effect=fault.effect,
-        edits=respelt(Word(fault.word, place), guesser(fault.choices).sure(fault.word)),
+        edits=respelt(Word(fault.word, place), guesser(fault.choices).unique_match(fault.word)),
     )
 
 

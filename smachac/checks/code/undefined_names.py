@@ -13,18 +13,18 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from smachac.analysis.accesses import USERDATA
-from smachac.analysis.code_slots import accepts, code_slots, free_in, parameters
+from smachac.analysis.code_slots import accepts, code_slots, parameters
 from smachac.analysis.context import Context
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.ir.code_places import attribute_place, node_place, python_tree
+from smachac.ir.code_places import attribute_place, node_place
 from smachac.ir.code_slips import CONSTANTS
 from smachac.ir.expressions import looks_like_expression
 from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, StateType, Struct
+from smachac.ir.script_code import USERDATA, script_code
 from smachac.ir.traversal import expressions
 from smachac.pysource.library_names import (
     MODULES,
@@ -86,7 +86,7 @@ class _Attribute(NamedTuple):
     "SM019",
     "undefined-name",
     Severity.ERROR,
-    firm=True,
+    unsuppressible=True,
     effect="Python would stop at this name with a NameError",
 )
 def undefined_name(context: Context) -> Iterator[Finding]:
@@ -224,10 +224,10 @@ def _names_used(
 
 def _attributes_used(node: Node, code: Expression) -> Iterator[_Attribute]:
     """The attributes that modules of the library do not have, with what is probably meant."""
-    tree = python_tree(code.text)
+    tree = script_code(code.text).tree
     used = [*attributes(tree)] if tree is not None else []
     keys = {key.name for key in node.inputs}
-    free = {name.id for name in free_in(code.text)} - keys if used else set()
+    free = {name.id for name in script_code(code.text).free_names} - keys if used else set()
     for module, attribute in used:
         meant = missing_name(module, attribute.attr) if module.partition(".")[0] in free else None
         if meant is not None:
@@ -290,12 +290,12 @@ def _codes(node: Node, types: Mapping[str, StateType]) -> Iterator[Expression]:
 
 def _uses(node: Node, code: Expression) -> Iterator[_Use]:
     """The names that code uses from its module, except names that every module has."""
-    tree = python_tree(code.text)  # SM016 if there is none
+    tree = script_code(code.text).tree  # SM016 if there is none
     function = tree if isinstance(tree, ast.Lambda) else None
     packages = _packages(tree)
     keys = {key.name for key in node.inputs}
     found: set[str] = set()
-    for name in free_in(code.text):
+    for name in script_code(code.text).free_names:
         word = name.id
         known = word in packages or hasattr(builtins, word) or word in sys.stdlib_module_names
         if word in found or known:
@@ -391,7 +391,7 @@ def _own_fix(use: _Use, own: Sequence[Source]) -> NameFix | None:
         names.update(word for pair in _DEFINED.findall(source.text) for word in pair if word)
         names.update(word for line in _IMPORTED.findall(source.text)
                      for word in _WORDS.findall(line))  # fmt: skip
-    near = guesser(sorted(names)).sure(use.name.id)
+    near = guesser(sorted(names)).unique_match(use.name.id)
     if near is None:
         return None
     return NameFix(f"did you mean `{near}`?", edits=_edits(use, near))
@@ -399,7 +399,7 @@ def _own_fix(use: _Use, own: Sequence[Source]) -> NameFix | None:
 
 def _param_fix(use: _Use) -> NameFix:
     """The cure of `params.speed` in code: a look-up."""
-    tree = python_tree(use.code.text)
+    tree = script_code(use.code.text).tree
     for node in ast.walk(tree) if tree is not None else ():
         match node:
             case ast.Attribute(value=ast.Name(id="params"), attr=param):
@@ -427,7 +427,7 @@ def _is_called(use: _Use) -> bool:
 
 def _edits(use: _Use, text: str) -> tuple[Edit, ...]:
     """The edit that replaces all uses of a name in its code."""
-    names = [name for name in free_in(use.code.text) if name.id == use.name.id]
+    names = [name for name in script_code(use.code.text).free_names if name.id == use.name.id]
     spans = [node_place(use.code, name) for name in names]
     if any(span.text != use.name.id for span in spans):
         return ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import is_open
+from smachac.analysis.control_flow import has_no_interface
 from smachac.analysis.outcome_rules import (
     Combination,
     SoundConcurrence,
@@ -34,7 +34,7 @@ from smachac.ir.traversal import ends_preempted, leads_to_child, outcome_names
 UNKNOWN_BRANCH = "SMACH refuses a rule with an unknown state or outcome: the program does not start"
 
 
-@rule("SM403", "dead-rule", Severity.ERROR, firm=True)
+@rule("SM403", "dead-rule", Severity.ERROR, unsuppressible=True)
 def dead_rule(context: Context) -> Iterator[Finding]:
     """A rule of the outcome map can never decide the outcome.
 
@@ -145,7 +145,7 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
             if child is None:
                 message = f"`{condition.child}` is not a state of `{container.name}`"
                 help = did_you_mean(guess(condition.child)) or states
-            elif is_open(child) or condition.outcome in outcome_names(child):
+            elif has_no_interface(child) or condition.outcome in outcome_names(child):
                 continue
             else:
                 message = f"`{child.name}` has no outcome `{condition.outcome}`"
@@ -179,7 +179,7 @@ def _other_outcome(container: Concurrence, child: Node, outcome: str) -> str:
     """The help for an outcome in a rule that its state does not have."""
     names = outcome_names(child)
     known = f"use one of its outcomes: {listed(names)}" if names else "it has no outcomes"
-    meant = guesser(names).sure(outcome) or of_one_meaning(child, outcome, names)
+    meant = guesser(names).unique_match(outcome) or of_one_meaning(child, outcome, names)
     alike = [state.name for state in container.children
              if state is not child and state.type == child.type]  # fmt: skip
     is_searched = meant is None and len(container.rules) <= MOST_COMPARED_RULES
@@ -285,7 +285,7 @@ def _ends_otherwise(branch: Node, outcome: str) -> bool:
 def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:
     """The entries of an iterator's final map for outcomes that never occur. An outcome that starts
     the next item does occur: it ends the iterator after a request to stop."""
-    if any(is_open(child) for child in container.children):
+    if any(has_no_interface(child) for child in container.children):
         return
     endings = [name for child in container.children for name in outcome_names(child)]
     known = [*endings, container.exhausted_outcome]
@@ -313,7 +313,7 @@ def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:
     "SM408",
     "empty-concurrence",
     Severity.ERROR,
-    firm=True,
+    unsuppressible=True,
     effect="SMACH for ROS 2 waits forever for the first state to end, and SMACH for Noetic fails",
 )
 def empty_concurrence(context: Context) -> Iterator[Finding]:
@@ -364,7 +364,7 @@ def empty_concurrence(context: Context) -> Iterator[Finding]:
     "SM401",
     "uncovered-combination",
     Severity.ERROR,
-    firm=True,
+    unsuppressible=True,
     effect="the concurrence has no outcome for this combination, so no program is generated",
 )
 def uncovered_combination(context: Context) -> Iterator[Finding]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from smachac.analysis.control_flow import is_open
+from smachac.analysis.control_flow import has_no_interface
 from smachac.checks import notation
 from smachac.ir.nodes import Concurrence, OutcomeRule
 from smachac.ir.traversal import outcome_names
@@ -33,7 +33,9 @@ def inverted_rules(container: Concurrence) -> tuple[Inverted, ...]:
             continue
         pairs = [(part.child, part.outcome) for part in entry.when]
         own = frozenset(outcome_names(child))
-        if not is_open(child) and all(one in declared and two in own for one, two in pairs):
+        if not has_no_interface(child) and all(
+            one in declared and two in own for one, two in pairs
+        ):
             found.append(Inverted(entry, tuple(pairs)))
         elif all(two in declared for _, two in pairs):
             found.append(Inverted(entry, tuple((two, one) for one, two in pairs)))

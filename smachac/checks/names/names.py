@@ -13,9 +13,9 @@ from smachac.analysis.context import Context
 from smachac.analysis.control_flow import (
     Linear,
     children_names,
-    is_open,
+    dangling_transitions,
+    has_no_interface,
     places_of,
-    strays,
     unknown_outcomes,
 )
 from smachac.checks import notation
@@ -107,12 +107,12 @@ class _Lost(NamedTuple):
     step: Transition
 
     @property
-    def sure(self) -> str | None:
+    def unique_match(self) -> str | None:
         """The only known name one slip away."""
-        return self.targets.guess.sure(self.step.target)
+        return self.targets.guess.unique_match(self.step.target)
 
 
-@rule("SM101", "unknown-target", Severity.ERROR, firm=True)
+@rule("SM101", "unknown-target", Severity.ERROR, unsuppressible=True)
 def unknown_target(context: Context) -> Iterator[Finding]:
     """The target of a transition is neither a state nor an outcome of the same container.
 
@@ -169,7 +169,11 @@ def _lost(path: str, container: Linear) -> Iterator[_Lost]:
     targets = _Targets(container)
     copied = copied_name(container)
     names, exits = children_names(container), frozenset(outcome_names(container))
-    lost = ((child, step) for child in container.children for step in strays([child], names, exits))
+    lost = (
+        (child, step)
+        for child in container.children
+        for step in dangling_transitions([child], names, exits)
+    )
     for child, step in lost:
         if not _was_reported(step) and step.target != copied:  # SM106
             yield _Lost(path, container, targets, child, step)
@@ -183,9 +187,9 @@ def copied_name(container: Container) -> str | None:
     if not is_linear or len(container.children) - len(names) != 1:
         return None
     exits = frozenset(outcome_names(container))
-    targets = {step.target for step in strays(container.children, names, exits)}
+    targets = {step.target for step in dangling_transitions(container.children, names, exits)}
     target = targets.pop() if len(targets) == 1 else None
-    return target if target and places_of(container).sure(target) is None else None
+    return target if target and places_of(container).unique_match(target) is None else None
 
 
 def _was_reported(step: Transition) -> bool:
@@ -204,7 +208,7 @@ def _with_others(found: Finding, others: list[_Lost]) -> Finding:
     more = [part for span in [*places][:MOST_ALIKE] for part in other_place(span, "and here")]
     words = [Word(other.step.target, other.step.target_span) for other in others]
     edits = [edit for word in words if word.span in places
-             for edit in respelt(word, others[0].sure)]  # fmt: skip
+             for edit in respelt(word, others[0].unique_match)]  # fmt: skip
     return replace(
         found,
         related=(*found.related, *more),
@@ -229,7 +233,7 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
     """SM101 for a transition; `elsewhere` is the path of a state of the name of its target in
     another container."""
     path, container, targets, child, step = fault
-    sure = fault.sure
+    sure = fault.unique_match
     whole = f"`{step.target}` is neither a state nor an outcome of `{container.name}`"
     if not step.target:
         whole = f"the transition for outcome `{step.outcome}` of `{child.name}` has no target"
@@ -354,7 +358,7 @@ def _is_taken_elsewhere(context: Context, span: Span) -> bool:
     "SM102",
     "unknown-outcome",
     Severity.ERROR,
-    firm=True,
+    unsuppressible=True,
     effect="SMACH refuses such a transition: the program stops with InvalidTransitionError",
 )
 def unknown_outcome(context: Context) -> Iterator[Finding]:
@@ -425,7 +429,7 @@ def _unknown_steps(path: str, child: Node, unknown: list[Transition]) -> Iterato
     suggested = suggested_outcomes(child, [step.outcome for step in unknown[:MOST_EXPLAINED]])
     for number, step in enumerate(unknown):
         is_searched = number < MOST_EXPLAINED
-        sure = guess.sure(step.outcome)
+        sure = guess.unique_match(step.outcome)
         meant = suggested.get(step.outcome)
         retried = _retried(child, step.outcome)
         message = f"`{child.name}` has no outcome `{step.outcome}`"
@@ -476,7 +480,7 @@ def _retried(child: Node, outcome: str) -> str | None:
 
 
 def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
-    if any(is_open(child) for child in container.children):
+    if any(has_no_interface(child) for child in container.children):
         return
     known = sorted({name for child in container.children for name in outcome_names(child)})
     never = not {*known} & {*container.loop_outcomes}
@@ -502,7 +506,7 @@ def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
     "SM106",
     "duplicate-state",
     Severity.ERROR,
-    firm=True,
+    unsuppressible=True,
     effect="a transition to this name leads to only one of the two, and SMACH refuses the other",
 )
 def duplicate_state(context: Context) -> Iterator[Finding]:
@@ -556,7 +560,7 @@ def duplicate_state(context: Context) -> Iterator[Finding]:
                 )
 
 
-@rule("SM107", "name-clash", Severity.ERROR, firm=True)
+@rule("SM107", "name-clash", Severity.ERROR, unsuppressible=True)
 def name_clash(context: Context) -> Iterator[Finding]:
     """A state has the name of an outcome of its container, or a name that is not valid in paths.
 

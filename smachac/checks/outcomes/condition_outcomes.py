@@ -64,7 +64,7 @@ def _endings(leaf: Leaf) -> Iterator[tuple[Word, str, str]]:
             yield Word(end, place), what, effect
 
 
-def meant_default(leaf: Leaf) -> str | None:
+def suggested_default(leaf: Leaf) -> str | None:
     """The declared outcome that is meant by a `default_outcome` without a transition: the only one
     to which no condition leads, if it has a transition."""
     default, conditions = variable(leaf, "default_outcome"), functions(leaf, "conditions")

@@ -286,14 +286,14 @@ def _masked_in_loop(
                 message=f"`{name_in_script(child)}` fails with `{outcome}`, but the loop continues"
                 f" and ends with `{end}`",
                 arguments=(own_name(loop, span), outcome, end),
-                help=_ending(loop, outcome) + _meant_help(child, outcome),
+                help=_ending(loop, outcome) + _suggestion(child, outcome),
                 related=calls(loop, span),
                 path=_exit_steps(context, path, loop, step) if step else (),
                 node=path,
             )
 
 
-def _meant_help(child: Node, outcome: str) -> str:
+def _suggestion(child: Node, outcome: str) -> str:
     """The rest of the help, for a failure that is intended: the declaration of the outcome at the
     state of the script. `exhausted` of a retry comes from the outcomes that it repeats."""
     causes: tuple[str, ...] = (outcome,)

@@ -8,13 +8,13 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from smachac.analysis.accesses import function_body
 from smachac.checks.help_text import calls, other_place
 from smachac.checks.types.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding
 from smachac.diagnostics.source import Span
 from smachac.ir.leaf import default_outcome, functions, variable, variable_of
 from smachac.ir.nodes import Leaf, Node
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import outcome_names
 
 
@@ -78,7 +78,7 @@ def _hidden(path: str, leaf: Leaf, conditions: Span, names: tuple[str, str], sam
 def _range(text: str) -> _Range | None:
     """The numbers of one key for which a condition is true; None if it is no comparison of one key
     with constants. Of parts with `and`, those about another key count as true."""
-    found = function_body(text)
+    found = script_code(text).function
     if found is None:
         return None
     body, names = found

@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import Linear, is_open, unhandled
+from smachac.analysis.control_flow import Linear, has_no_interface, unhandled
 from smachac.checks.help_text import calls, did_you_mean
 from smachac.checks.properties.failed_properties import missed_states
 from smachac.diagnostics.diagnostic import Finding
@@ -135,7 +135,7 @@ def _never_continues(container: Sequence) -> bool:
     if container.connector_span.source is NOWHERE.source:
         return False
     return all(
-        container.connector_outcome not in outcome_names(child) and not is_open(child)
+        container.connector_outcome not in outcome_names(child) and not has_no_interface(child)
         for child in container.children
     )
 
@@ -158,7 +158,7 @@ def _wrong_connector(path: str, container: Sequence) -> Finding:
         help=did_you_mean(guess(word.text)) or known,
         related=calls(container, word.span),
         node=path,
-        edits=respelt(word, guess.sure(word.text)),
+        edits=respelt(word, guess.unique_match(word.text)),
     )
 
 

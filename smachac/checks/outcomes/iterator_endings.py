@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from smachac.analysis.control_flow import is_open
+from smachac.analysis.control_flow import has_no_interface
 from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
 from smachac.ir.nodes import Outcome
@@ -26,7 +26,7 @@ def endings(container: nodes.Iterator) -> Iterator[tuple[str, str, str]]:
                 yield child.name, name, renamed.get(name, name)
 
 
-class MeantEnding(NamedTuple):
+class SuggestedEnding(NamedTuple):
     """The outcome of an iterator after its last item, which the script does not declare and which
     leads nowhere, and the declared outcome that is meant."""
 
@@ -35,10 +35,14 @@ class MeantEnding(NamedTuple):
     meant: Outcome
 
 
-def meant_ending(container: nodes.Iterator) -> MeantEnding | None:
+def suggested_ending(container: nodes.Iterator) -> SuggestedEnding | None:
     """The outcome that an iterator is meant to have after its last item: the only one that it
     declares and cannot end with."""
-    if container.sugar or not container.transitions or any(map(is_open, container.children)):
+    if (
+        container.sugar
+        or not container.transitions
+        or any(map(has_no_interface, container.children))
+    ):
         return None
     ways = {result for _, _, result in endings(container)}
     (name, *_) = [result for _, _, result in endings(container)]
@@ -52,4 +56,4 @@ def meant_ending(container: nodes.Iterator) -> MeantEnding | None:
         for outcome in container.outcomes
         if outcome.name not in ways and outcome.name in handled
     ]
-    return MeantEnding(container, added[0], left[0]) if len(left) == 1 else None
+    return SuggestedEnding(container, added[0], left[0]) if len(left) == 1 else None

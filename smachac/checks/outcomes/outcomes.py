@@ -20,8 +20,8 @@ from smachac.checks import notation
 from smachac.checks.concurrence.inverted_rules import Inverted, inverted_rules, transposed_rules
 from smachac.checks.edits import likely, with_field
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
-from smachac.checks.outcomes.condition_outcomes import meant_default
-from smachac.checks.outcomes.iterator_endings import MeantEnding, endings, meant_ending
+from smachac.checks.outcomes.condition_outcomes import suggested_default
+from smachac.checks.outcomes.iterator_endings import SuggestedEnding, endings, suggested_ending
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Edit
@@ -45,7 +45,7 @@ from smachac.ir.traversal import outcome_names, written_children
     "SM103",
     "undeclared-container-outcome",
     Severity.ERROR,
-    firm=True,
+    unsuppressible=True,
     effect="SMACH raises InvalidTransitionError for an undeclared outcome: the program stops",
 )
 def undeclared_container_outcome(context: Context) -> Iterator[Finding]:
@@ -182,7 +182,7 @@ def _undeclared_endings(path: str, container: nodes.Iterator) -> Iterator[Findin
     "SM104",
     "unhandled-outcome",
     Severity.ERROR,
-    firm=True,
+    unsuppressible=True,
     effect="SMACH refuses to run such a container: none of its states runs",
 )
 def unhandled_outcome(context: Context) -> Iterator[Finding]:
@@ -223,7 +223,7 @@ def _unhandled_outcomes(path: str, container: Linear, lacking: Unhandled) -> Ite
     steps = _steps(container)
     for child, outcomes in lacking:
         left = [*outcomes]
-        meant = meant_ending(child) if isinstance(child, nodes.Iterator) else None
+        meant = suggested_ending(child) if isinstance(child, nodes.Iterator) else None
         if meant is not None and meant.result in left:
             left.remove(meant.result)
             yield _misnamed_ending(path, meant)
@@ -357,7 +357,7 @@ def _several_unhandled(
     )
 
 
-def _misnamed_ending(path: str, ending: MeantEnding) -> Finding:
+def _misnamed_ending(path: str, ending: SuggestedEnding) -> Finding:
     container, result, meant = ending
     name, last = container.name, container.exhausted_outcome
     code = notation.name(container, "exhausted_outcome", meant.name)
@@ -400,7 +400,7 @@ def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, targ
     """SM104 for an outcome without a transition."""
     held = child.variables if isinstance(child, Leaf) else ()
     default = next((variable for variable in held if variable.name == "default_outcome"), None)
-    meant = meant_default(child) if isinstance(child, Leaf) else None
+    meant = suggested_default(child) if isinstance(child, Leaf) else None
     if default is not None and meant is not None and default.value.data == outcome.name:
         return Finding(
             span=default.value.span,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import Linear, children_names, is_open, unhandled_in
+from smachac.analysis.control_flow import Linear, children_names, has_no_interface, unhandled_in
 from smachac.checks import notation
 from smachac.checks.edits import likely
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
@@ -252,7 +252,7 @@ def _if_declared(container: Container, results: set[str]) -> frozenset[str] | No
 
 
 def _iterator_outcomes(container: nodes.Iterator) -> frozenset[str] | None:
-    if any(is_open(child) for child in container.children):
+    if any(has_no_interface(child) for child in container.children):
         return None
     if _if_declared(container, {result for _, _, result in endings(container)}) is None:
         return None
@@ -306,7 +306,7 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
     "SM205",
     "no-initial",
     Severity.ERROR,
-    firm=True,
+    unsuppressible=True,
     effect="a container needs a state where it starts: SMACH stops it with an error",
 )
 def no_initial(context: Context) -> Iterator[Finding]:

@@ -45,7 +45,7 @@ def name_fault(fault: NameFault, context: Context) -> Finding:
     if atom.subject == "path":  # without the states that a retry or a time limit adds
         written = context.of_machine(_written)
         known = [name for name in known if name in written]
-    sure = guesser(known).sure(atom.name)
+    sure = guesser(known).unique_match(atom.name)
     edits = respelt(Word(atom.name, atom.span), sure) if atom.subject == "path" else ()
     names = listed(known)
     alike = [name for name in known if is_failure(name) == is_failure(atom.name)]

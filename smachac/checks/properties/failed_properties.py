@@ -6,7 +6,12 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import children_names, strays, unhandled, unknown_outcomes
+from smachac.analysis.control_flow import (
+    children_names,
+    dangling_transitions,
+    unhandled,
+    unknown_outcomes,
+)
 from smachac.checks.properties.property_turns import Turn, turn_of
 from smachac.ir.properties import Property
 from smachac.ir.traversal import outcome_names
@@ -49,7 +54,7 @@ def _open_ends(context: Context) -> frozenset[tuple[str, str]]:
     for path, container in context.linear:
         names, exits = children_names(container), frozenset(outcome_names(container))
         for child in container.children:
-            ends = [step.outcome for step in strays([child], names, exits)]
+            ends = [step.outcome for step in dangling_transitions([child], names, exits)]
             ends += [outcome.name for outcome in unhandled(child)]
             if unknown_outcomes(child):  # SM102: a transition of these is probably meant
                 handled = {step.outcome for step in child.transitions if step.origin == "written"}

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
+from smachac.checks.types.value_places import WHOLE, Part
 from smachac.ir.nodes import Data, Leaf, Struct
 
 
@@ -58,8 +59,8 @@ def names_in(data: Data) -> Iterator[str]:
         yield from (name for name, _ in data.entries)
 
 
-def part_named(data: Data, name: str) -> tuple[tuple[int | str, ...], bool]:
-    """The step to a name in a literal (`names_in`), and whether it is a key."""
+def part_named(data: Data, name: str) -> Part:
+    """The part of a literal that is a name (`names_in`)."""
     if isinstance(data, tuple):
-        return (data.index(name),), False
-    return ((name,), True) if isinstance(data, Struct) else ((), False)
+        return Part((data.index(name),))
+    return Part((name,), key=True) if isinstance(data, Struct) else WHOLE

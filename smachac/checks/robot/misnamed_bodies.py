@@ -34,8 +34,8 @@ def misnamed_body(
     span = held.value.span if held is not None and given else leaf.span
     related: list[Related] = []
     for flow in about:
-        part, key = part_named(flow.value, name)
-        place = place_of_part(flow.origin.span, part, key=key)
+        part = part_named(flow.value, name)
+        place = place_of_part(flow.origin.span, part.steps, key=part.key)
         related += other_place(place, f"{reader(flow)} reads the body `{name}`")
     finding = Finding(
         span=span,

@@ -11,7 +11,7 @@ from smachac.analysis.uses import place_of
 from smachac.checks.help_text import calls, other_place
 from smachac.checks.robot.literal_parts import as_float, frame_of, role_of
 from smachac.checks.rule import rule
-from smachac.checks.types.literals import at
+from smachac.checks.types.literals import literal_finding
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span
 from smachac.ir.graph import START
@@ -73,7 +73,7 @@ def too_fast(context: Context) -> Iterator[Finding]:
             assert robot is not None
             message = f"`{flow.origin.cell.key}` is {speed:g} rad/s, but no joint of"
             message += f" `{robot.name}` is faster than {most:g} rad/s"
-            yield at(flow, message, f"write a speed of at most {most:g} rad/s")
+            yield literal_finding(flow, message, f"write a speed of at most {most:g} rad/s")
 
 
 @rule(

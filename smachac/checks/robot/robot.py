@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator
+from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import reaching_flows
@@ -24,8 +25,9 @@ from smachac.checks.robot.literal_parts import (
 from smachac.checks.robot.simulated_world import is_simulated, loaded_too_late, uses_simulation
 from smachac.checks.rule import rule
 from smachac.checks.types.clash_findings import clash_findings
-from smachac.checks.types.literals import at, reader
+from smachac.checks.types.literals import literal_finding, reader
 from smachac.checks.types.number_help import decimal_commas
+from smachac.checks.types.value_places import Part
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import MOST_LISTED, listed
@@ -88,7 +90,7 @@ def wrong_length(context: Context) -> Iterator[Finding]:
                 message = f"`{flow.origin.cell.key}` has {len(flow.value)} numbers, but the arm has"
                 help = decimal_commas(flow.origin.span.text, lengths)
                 help = help or f"write one number for each joint: {have} in all"
-                yield at(flow, f"{message} {have} joints", help)
+                yield literal_finding(flow, f"{message} {have} joints", help)
 
 
 @rule(
@@ -147,7 +149,7 @@ def joint_limit(context: Context) -> Iterator[Finding]:
             in_list = isinstance(flow.value, tuple)
             what = f"joint {number}" if in_list else f"`{joint.name}`"
             limits = f"{joint.lower:g} to {joint.upper:g}"
-            yield at(
+            yield literal_finding(
                 flow,
                 f"{what} of `{flow.origin.cell.key}` is {angle} {joint.unit}, outside its limits"
                 f" {limits}",
@@ -155,8 +157,8 @@ def joint_limit(context: Context) -> Iterator[Finding]:
                 if _seems_degrees(joint, angle)
                 else _position_help(joint, as_float(angle), limits),
                 (str(number) if in_list else joint.name,),
-                other_place(joint.span, f"the limits of `{joint.name}`"),
-                part=(number - 1,) if in_list else (joint.name,),
+                part=Part((number - 1,) if in_list else (joint.name,)),
+                more=other_place(joint.span, f"the limits of `{joint.name}`"),
             )
 
 
@@ -191,12 +193,12 @@ def _in_degrees(flow: TypeFlow, robot: Robot, faults: list[tuple[int, Joint, Dat
     new = ", ".join(
         _radians(given) if is_number(given) and joint.turns else str(given) for joint, given in rows
     )
-    return at(
+    return literal_finding(
         flow,
         message,
         f"convert the angles from degrees to radians: `[{new}]`",
         tuple(str(number) for number, _, _ in faults),
-        other_place(joint.span, f"the limits of `{joint.name}`"),
+        more=other_place(joint.span, f"the limits of `{joint.name}`"),
     )
 
 
@@ -255,7 +257,7 @@ def not_a_rotation(context: Context) -> Iterator[Finding]:
                 nearest = ", ".join(f"{number / length:.4f}" for number in numbers)
                 help = f"write the nearest rotation, `[{nearest}]`"
             message = f"the quaternion {list(rotation)} has the length {length:.4g}, not 1"
-            yield at(flow, message, help, tuple(map(str, rotation)))
+            yield literal_finding(flow, message, help, tuple(map(str, rotation)))
 
 
 def _wrong_rotations(origin: TypeFlow, wanted: Type) -> Iterator[tuple[tuple[Data, ...], float]]:
@@ -414,8 +416,9 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
             message = f"{where} has no frame `{name}`"
             severity = Severity.ERROR if simulated else None
             help = did_you_mean(guess(name)) or help
-            part = frame_place(flow.value)
-            yield at(flow, message, help, (name,), severity=severity, part=part)
+            part = Part(frame_place(flow.value))
+            finding = literal_finding(flow, message, help, (name,), part=part)
+            yield replace(finding, severity=severity)
     if simulated:
         yield from _late_frames(context, robot)
 
@@ -445,13 +448,9 @@ def _begins_with_slash(context: Context, flow: TypeFlow) -> bool:
 def _frame_with_slash(flow: TypeFlow) -> Finding:
     """SM505 for a frame with a leading slash, as the tf of old versions of ROS 1 accepted it."""
     name = str(flow.value)
-    return at(
-        flow,
-        f"the frame `{name}` begins with a slash",
-        f"write `{name.lstrip('/')}`",
-        (name,),
-        effect=f"tf2 refuses such a name: {reader(flow)} ends with `aborted` in each run",
-    )
+    message, help = f"the frame `{name}` begins with a slash", f"write `{name.lstrip('/')}`"
+    effect = f"tf2 refuses such a name: {reader(flow)} ends with `aborted` in each run"
+    return replace(literal_finding(flow, message, help, (name,)), effect=effect)
 
 
 def _known(robot: Robot) -> frozenset[str]:
@@ -489,7 +488,7 @@ def _late_frames(context: Context, robot: Robot) -> Iterator[Finding]:
                     name,
                     "frame",
                     "write another frame, such as `base`",
-                    part=frame_place(flow.value),
+                    part=Part(frame_place(flow.value)),
                 )
 
 
@@ -542,6 +541,5 @@ def _strangers(
         if not free:
             help = f"remove it: all joints of the robot are here, {listed(joints)}"
         message = f"the robot `{robot.name}` has no joint `{name}`"
-        part, key = part_named(flow.value, name)
-        effect = "the state cannot move a joint of this name: it fails"
-        yield at(flow, message, help, (name,), part=part, key=key, effect=effect)
+        finding = literal_finding(flow, message, help, (name,), part=part_named(flow.value, name))
+        yield replace(finding, effect="the state cannot move a joint of this name: it fails")

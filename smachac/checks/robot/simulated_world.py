@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Literal
 
 from smachac.analysis.context import Context
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.checks.help_text import other_place
-from smachac.checks.types.literals import at, reader
+from smachac.checks.types.literals import literal_finding, reader
+from smachac.checks.types.value_places import Part
 from smachac.diagnostics.diagnostic import Finding, Severity
 
 
@@ -19,12 +21,11 @@ def loaded_too_late(
     what: Literal["frame", "body"],
     otherwise: str,
     *,
-    part: tuple[int | str, ...] = (),
-    key: bool = False,
+    part: Part,
 ) -> Iterator[Finding]:
     """The finding for a body, or its frame, that is loaded only after the state of a literal that
-    names it. `otherwise` is the help if that state itself loads the body; `part`, `key`: see `at`.
-    """
+    names it. `otherwise` is the help if that state itself loads the body; `part`: that of the
+    literal with the name."""
     path = context.loading_order.loaded_later(flow.cell.path, name)
     if path is None:
         return
@@ -34,16 +35,15 @@ def loaded_too_late(
         when = f"{reader(flow)}: `{later.name}` loads it later"
         help = f"run `{later.name}` before {reader(flow)}: the {what} exists only after it"
     missing = "the simulation has no frame" if what == "frame" else "there is no body"
-    yield at(
+    finding = literal_finding(
         flow,
         f"{missing} `{name}` before {when}",
         help,
         (name,),
-        other_place(later.span, f"`{name}` is loaded here"),
-        severity=Severity.ERROR,
         part=part,
-        key=key,
+        more=other_place(later.span, f"`{name}` is loaded here"),
     )
+    yield replace(finding, severity=Severity.ERROR)
 
 
 def uses_simulation(context: Context, cell: Cell) -> bool:

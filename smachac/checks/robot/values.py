@@ -19,8 +19,8 @@ from smachac.checks.robot.literal_parts import moves_arm, names_in, part_named, 
 from smachac.checks.robot.misnamed_bodies import misnamed_body
 from smachac.checks.robot.simulated_world import is_simulated, loaded_too_late, uses_simulation
 from smachac.checks.rule import rule
-from smachac.checks.types.literals import at
-from smachac.checks.types.value_places import parts_of, place_of_part, steps_to_number
+from smachac.checks.types.literals import literal_finding
+from smachac.checks.types.value_places import Part, parts_of, place_of_part, steps_to_number
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser
@@ -137,18 +137,18 @@ def _out_of(flow: TypeFlow, limits: Limits) -> Iterator[Finding]:
     for number in dict.fromkeys(_outside(flow.value, limits)):
         held = "is" if number == flow.value else "contains"
         message = f"`{origin.key}` {held} {number}, but the {kind} `{cell.key}` of {owner} must be"
-        yield at(
+        help = f"write {'' if limits.choices else 'a number '}{in_words(limits)}"
+        help += (f", in `{unit}`" if unit else "") + _converted(number, unit, limits)
+        finding = literal_finding(
             flow,
             f"{message} {in_words(limits)}",
-            ("write " if limits.choices else "write a number ")
-            + in_words(limits)
-            + (f", in `{unit}`" if unit else "")
-            + _converted(number, unit, limits),
+            help,
             (str(number),),
-            more,
-            part=steps_to_number(flow.value, number),
-            effect=f"the number is used as it is: {owner} works with {number} {unit}".rstrip(),
+            part=Part(steps_to_number(flow.value, number)),
+            more=more,
         )
+        effect = f"the number is used as it is: {owner} works with {number} {unit}".rstrip()
+        yield replace(finding, effect=effect)
 
 
 def _converted(number: int | float, unit: str, limits: Limits) -> str:
@@ -269,7 +269,8 @@ def unknown_name(context: Context) -> Iterator[Finding]:
                 help = did_you_mean(near) or _things_in_words(role, known[role])
                 message = f"there is no {role} `{name}`"
                 places = _in_scene(context, near) if role == "body" else ()
-                yield at(flow, message, help, (name,), places, severity=severity)
+                finding = literal_finding(flow, message, help, (name,), more=places)
+                yield replace(finding, severity=severity)
     if is_simulated(context):
         yield from _late_bodies(context)
     yield from _missing_grippers(context, severity)
@@ -290,9 +291,9 @@ def _late_bodies(context: Context) -> Iterator[Finding]:
     for flow in reaching_flows(flows):
         for name in dict.fromkeys(names_in(flow.value)):
             if name not in given:
-                part, key = part_named(flow.value, name)
+                part = part_named(flow.value, name)
                 help = f"remove `{name}`: the state names its own body"
-                yield from loaded_too_late(context, flow, name, "body", help, part=part, key=key)
+                yield from loaded_too_late(context, flow, name, "body", help, part=part)
 
 
 def _missing_grippers(context: Context, severity: Severity | None) -> Iterator[Finding]:
@@ -515,7 +516,8 @@ def _doubtful(
     held = "is" if value == flow.value else "contains"
     message = f"`{flow.origin.cell.key}` {held} {value}, which is read in {unit}"
     message += f": is it in {meant}?"
-    yield at(flow, message, help, (str(value), unit), part=part, effect=effect)
+    finding = literal_finding(flow, message, help, (str(value), unit), part=Part(part))
+    yield replace(finding, effect=effect)
 
 
 def _metres(data: Data, value: float) -> str:

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from smachac.analysis.context import Context
 from smachac.analysis.type_inference import Cell, TypeFlow, Types
-from smachac.checks.types.literals import at, reader
+from smachac.checks.types.literals import literal_finding, reader
 from smachac.diagnostics.diagnostic import Finding, Problem, Report, Severity, problem
 from smachac.ir.leaf import key_names, variable_of
 from smachac.ir.nodes import Data, Leaf, Machine, Node, is_number
@@ -72,7 +72,7 @@ def out_of_reach(flow: TypeFlow, point: str) -> Finding:
     """
     message = f"{reader(flow)} cannot reach {point}: no joint positions bring the tool to this pose"
     help = "move the pose closer to the base of the robot (in metres), or change its rotation"
-    return at(flow, message, help, (reader(flow).strip("`"), point))
+    return literal_finding(flow, message, help, (reader(flow).strip("`"), point))
 
 
 def poses_to_reach(context: Context) -> Iterator[Reach]:

@@ -16,7 +16,12 @@ from smachac.analysis.type_lattice import fits, present
 from smachac.checks.edits import likely, listing, with_input, with_remapping
 from smachac.checks.help_text import calls, did_you_mean
 from smachac.checks.ros.message_calls import CHECK_FIELDS, call_faults, message_calls
-from smachac.checks.ros.message_keys import TYPE_KEY, lacks_type_key, remapped_field, type_key_meant
+from smachac.checks.ros.message_keys import (
+    TYPE_KEY,
+    lacks_type_key,
+    remapped_field,
+    suggested_type_key,
+)
 from smachac.checks.ros.message_reads import (
     code_places,
     described,
@@ -30,10 +35,10 @@ from smachac.checks.ros.message_reads import (
 )
 from smachac.checks.ros.message_types import (
     call_of,
-    meant_type,
     missing_types,
     names_type,
     no_type,
+    suggested_type,
     type_in_place_of_part,
     word_in,
 )
@@ -47,8 +52,8 @@ from smachac.checks.ros.message_values import (
 )
 from smachac.checks.ros.messages_in_classes import faults_in_classes
 from smachac.checks.rule import rule
-from smachac.checks.types.literals import at
-from smachac.checks.types.value_places import place_of_part
+from smachac.checks.types.literals import literal_finding
+from smachac.checks.types.value_places import Part, place_of_part
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.wording import both, listed
@@ -275,7 +280,7 @@ def _argument_findings(
         effect = f"`{node.name}` ends with `aborted`: the message is never sent"
         if wanted is None:
             effect = "the field is ignored, or the program stops"
-            yield unknown_field_finding(path, node, word, (message,), effect=effect)
+            yield replace(unknown_field_finding(path, node, word, (message,)), effect=effect)
             continue
         text = f"the value of `{names[-1]}` does not fit: the field of {described(message)} is"
         help = value_help(value, wanted)
@@ -295,14 +300,16 @@ def _untyped_mappings(context: Context, path: str, leaf: Leaf) -> Iterator[Findi
         for flow in flows:
             if flow.how == "value" and isinstance(flow.value, Struct):
                 add = listing([leaf], "input_keys", TYPE_KEY)
-                meant = type_key_meant(context.routes.nodes.get(path.rpartition("/")[0]))
+                meant = suggested_type_key(context.routes.nodes.get(path.rpartition("/")[0]))
                 help = f"{add}, and set the key to the type, as in `{TYPE_KEY}: std_msgs/Bool`"
                 if meant is not None:
                     help = add
                     if meant != TYPE_KEY:
                         help += f" and `{TYPE_KEY}: {meant}` to its `remapping`"
                 message = "gets a mapping as its message, but no type: it lacks the key"
-                found = at(flow, f"`{leaf.name}` {message} `{TYPE_KEY}`", help, (leaf.name,))
+                found = literal_finding(
+                    flow, f"`{leaf.name}` {message} `{TYPE_KEY}`", help, (leaf.name,)
+                )
                 edits = with_input(leaf, TYPE_KEY) if meant is not None else ()
                 if edits and meant is not None and meant != TYPE_KEY:
                     edits += with_remapping(leaf, TYPE_KEY, meant)
@@ -330,8 +337,8 @@ def _wrong_messages(
     absent = missing.get(("msg", type_))
     if absent is not None and absent.other is None:
         package, *_, name = re.split(r"[/.]", type_)
-        meant = meant_type(name, "msg", absent)
-        yield at(given[0], no_type(package, name, "msg"), meant, (package, name))
+        meant = suggested_type(name, "msg", absent)
+        yield literal_finding(given[0], no_type(package, name, "msg"), meant, (package, name))
     messages = [definition.part("message") for definition in found.get(("msg", type_), ())]
     effect = f"`{leaf.name}` ends with `aborted`: the message is never used"
     for name in sorted(names) if messages else ():
@@ -378,15 +385,14 @@ def _mapping_faults(
                 text = f"the value of `{steps[-1]}` does not fit: the field of"
                 text += f" {described(message)} is `{wanted}`"
                 help = value_help(given, wanted)
-            yield at(
+            finding = literal_finding(
                 flow,
                 text,
                 help,
                 (message.name, *map(str, item), *steps),
-                part=(*item, *steps),
-                key=wanted is None,
-                effect=effect,
+                part=Part((*item, *steps), key=wanted is None),
             )
+            yield replace(finding, effect=effect)
 
 
 _Literal: TypeAlias = "tuple[TypeFlow, tuple[int, ...], Data]"
@@ -456,8 +462,8 @@ def _wrong_values(
         if wanted is None:
             word = _field_word(names, span)
             also = other if len(names) == 1 else ""
-            finding = unknown_field_finding(path, leaf, word, (message,), effect=effect, other=also)
-            yield replace(finding, help=level or finding.help)
+            finding = unknown_field_finding(path, leaf, word, (message,), other=also)
+            yield replace(finding, help=level or finding.help, effect=effect)
             continue
         text = f"the value of `{names[-1]}` does not fit: the field of {described(message)} is"
         place = _value_span(_field_word(names, span).span, span)
@@ -526,7 +532,7 @@ def _faults(
             lists = (("input_keys", leaf.inputs), ("output_keys", leaf.outputs))
             named = [part for part, keys in lists if name in [key.name for key in keys]]
             also = f", in the `{named[0]}`" if use.key and named and len(named) == 1 else ""
-            yield unknown_field_finding(path, leaf, use.word, messages, also, other=other)
+            yield unknown_field_finding(path, leaf, use.word, messages, also=also, other=other)
         elif use.key and name in inputs:
             given = present(context.types.inputs[path, name])
             fields = [message.field(name) for message in messages]

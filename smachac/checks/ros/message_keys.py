@@ -25,7 +25,7 @@ def lacks_type_key(node: Node) -> bool:
     return bool(names) and TYPE_KEY not in [key.name for key in node.inputs]
 
 
-def type_key_meant(container: Node | None) -> str | None:
+def suggested_type_key(container: Node | None) -> str | None:
     """The only key in the userdata of a container that holds the name of a message type and that
     none of its states reads."""
     if not isinstance(container, Container):

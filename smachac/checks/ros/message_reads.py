@@ -1,4 +1,9 @@
-"""Fields of messages that functions read, and values of messages with which they calculate."""
+"""Findings on code that uses messages (SM512): fields that a message does not have, and values of
+other types in comparisons and operations.
+
+The code is that of functions of the script (message_fields.py) or of the user's classes
+(messages_in_classes.py); the fields that it uses are those of analysis/message_code.py.
+"""
 
 from __future__ import annotations
 
@@ -246,12 +251,13 @@ def unknown_field_finding(
     node: Node,
     word: Word,
     messages: Sequence[Message],
+    *,
     also: str = "",
-    effect: str | None = None,
     other: str = "",
     here: tuple[Related, ...] = (),
 ) -> Finding:
-    """`also`: the other place of the script that has the name; `other`: another type; `here`: the
+    """The finding for a word that is no field of any of the messages. `also`: the other place of
+    the script that has the name; `other`: the end of the help, about another type; `here`: the
     place that uses the code."""
     names = sorted({field.name for message in messages for field in message.fields})
     known = f"use one of its fields: {listed(names)}" if names else "remove it: it has no fields"
@@ -262,7 +268,7 @@ def unknown_field_finding(
     if guess and also:
         help += f" Write it here{also}, and remap it: `remapping: {{{guess}: {word.text}}}`"
     message = f"{described(messages[0])} has no field `{word.text}`"
-    finding = field_finding(path, node, word, message, help, messages, effect)
+    finding = field_finding(path, node, word, message, help, messages)
     return replace(finding, related=(*here, *finding.related)) if here else finding
 
 

@@ -60,7 +60,7 @@ def missing_types(path: str, leaf: Leaf, missing: MissingDefinitions) -> Iterato
             message = no_type(parts[0], parts[-1], kind)
         else:
             continue
-        known = meant_type(parts[-1], kind, absent or Missing(()))
+        known = suggested_type(parts[-1], kind, absent or Missing(()))
         word = parts[-1]
         if absent is None and other is not None and "/" in type_text(named):
             word = "/".join(parts[1:])
@@ -82,7 +82,7 @@ def no_type(package: str, name: str, kind: DefinitionKind) -> str:
     return f"the package `{package}` has no {kind_word(kind)} `{name}`"
 
 
-def meant_type(name: str, kind: DefinitionKind, absent: Missing) -> str:
+def suggested_type(name: str, kind: DefinitionKind, absent: Missing) -> str:
     """The help for a type that does not exist: names of the same form with a size, the type of this
     name in another package, the nearest name, or all names."""
     word = name.casefold()

@@ -13,7 +13,7 @@ from smachac.checks.ros.message_reads import (
     wrong_operands,
     wrong_reads,
 )
-from smachac.checks.ros.message_types import KIND_WORDS, meant_type, no_type
+from smachac.checks.ros.message_types import KIND_WORDS, no_type, suggested_type
 from smachac.diagnostics.diagnostic import Finding
 from smachac.diagnostics.source import Span
 from smachac.ir.class_facts import ClassMessages, MessageRef
@@ -52,7 +52,7 @@ def _faults(
                 if other is None
                 else f"`{text}` is {KIND_WORDS[other]}, not {KIND_WORDS[kind]}",
                 arguments=(ref.package, ref.name),
-                help=meant_type(ref.name, kind, absent)
+                help=suggested_type(ref.name, kind, absent)
                 if other is None
                 else f"import it from `{ref.package}.{other}`",
                 effect="the program stops when it imports the type",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from smachac.analysis.control_flow import is_open
+from smachac.analysis.control_flow import has_no_interface
 from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
 from smachac.ir.nodes import Container
@@ -12,7 +12,7 @@ from smachac.ir.traversal import outcome_names
 def turned_renames(container: Container) -> list[tuple[str, str]]:
     """The entries of the final outcome map of an iterator in which the two names have changed
     places: its state ends with the second one only."""
-    if not isinstance(container, nodes.Iterator) or any(map(is_open, container.children)):
+    if not isinstance(container, nodes.Iterator) or any(map(has_no_interface, container.children)):
         return []
     ends = {name for child in container.children for name in outcome_names(child)}
     ends.add(container.exhausted_outcome)

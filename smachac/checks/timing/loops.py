@@ -29,12 +29,12 @@ from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.code_places import python_tree
 from smachac.ir.expressions import Lambda, Name, parse_expression, parts
 from smachac.ir.graph import can_end, reachable
 from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Expression, Leaf, Node, StateMachine, Transition
 from smachac.ir.outcome_names import PREEMPTED, fails, successes
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import leads_to_child, outcome_names, outer_inputs, outer_outputs, walk
 
 PURE = frozenset(["abs", "bool", "float", "int", "len", "max", "min", "round", "str"])
@@ -108,7 +108,7 @@ def _endless_items(path: str, loop: nodes.Iterator, data: nodes.Data) -> Iterato
         (isinstance(child, Leaf) and child.open) or not going_on.issuperset(outcome_names(child))
         for child in loop.children
     )
-    if not leaving and _has_no_end(python_tree(data.text)):
+    if not leaving and _has_no_end(script_code(data.text).tree):
         yield Finding(
             span=loop.items_span,
             message=f"`{loop.name}` never ends: `{data.text}` has no last item, and no outcome of"

@@ -1,4 +1,6 @@
-"""Rules over preempt requests that do not stop the machine, or that it reports as a success."""
+"""Rules over requests to stop: a state answers one and the task goes on (SM209, SM211), or the
+machine reports the stop as a success (SM210). The paths after an answer are those of
+analysis/stop_paths.py."""
 
 from __future__ import annotations
 

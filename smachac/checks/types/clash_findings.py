@@ -27,10 +27,10 @@ from smachac.checks.help_text import calls, did_you_mean, other_place
 from smachac.checks.type_words import HELP, example, in_words, named, place_in_words
 from smachac.checks.types.number_help import (
     decimal_commas,
-    list_meant,
-    number_meant,
-    rotation_meant,
     sizes_of,
+    suggested_list,
+    suggested_number,
+    suggested_rotation,
 )
 from smachac.checks.types.record_fields import (
     missing_fields,
@@ -282,13 +282,13 @@ def _help(clash: Clash) -> str:
         type_ = fields(wanted)[name]
         return f"add `{name}`, or make it optional where it is read: `{name}: {type_}?`"
     if clash.flow.how == "value":
-        meant = _meant(clash)
+        meant = _suggested(clash)
         if meant is not None:
             return meant
     if clash.flow.how == "value" and wanted.name in HELP:
         steps = steps_to_misfit(clash.flow.value, clash.cell.declared)
         part = part_at(clash.flow.value, steps) if wanted.name == "Quaternion" else None
-        return rotation_meant(part) or HELP[wanted.name]
+        return suggested_rotation(part) or HELP[wanted.name]
     if given.name == "none":
         return f"give it a value, or declare it as `{wanted}?` where it is read"
     if given.name == "optional" and fits(inside(given), wanted):
@@ -409,7 +409,7 @@ def _long_form(clash: Clash) -> str | None:
     )
 
 
-def _meant(clash: Clash) -> str | None:
+def _suggested(clash: Clash) -> str | None:
     """The help for a literal that was meant as a number, or as a list of numbers."""
     given, wanted = clash.misfit.given, clash.misfit.wanted
     number = present(wanted)
@@ -418,9 +418,9 @@ def _meant(clash: Clash) -> str | None:
         return f"write `{flag}`" if flag else None
     if given.name == "literal" and number.name in ("int", "float"):
         texts = [argument for argument in given.args if isinstance(argument, str)]
-        return number_meant(texts[0], number) if texts else None
+        return suggested_number(texts[0], number) if texts else None
     if given.name == "literal" and (number.name in ("list", "array") or number.name in HELP):
-        return list_meant(str(given.args[0]))
+        return suggested_list(str(given.args[0]))
     return decimal_commas(clash.flow.origin.span.text, sizes_of(clash.cell.declared))
 
 

@@ -1,28 +1,27 @@
-"""Findings about literals: their place, also in the call of a sub-script, and their reader."""
+"""Findings about literals, for the rules on types, robots and messages: the place of a literal or
+its part, also in the call of a sub-script, and the state that reads it."""
 
 from __future__ import annotations
 
 from smachac.analysis.type_inference import TypeFlow
 from smachac.checks.help_text import calls, other_place
-from smachac.checks.types.value_places import place_of_part
-from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.checks.types.value_places import WHOLE, Part, place_of_part
+from smachac.diagnostics.diagnostic import Finding, Related
 
 
-def at(
+def literal_finding(
     flow: TypeFlow,
     message: str,
     help: str | None,
     names: tuple[str, ...] = (),
+    *,
+    part: Part = WHOLE,
     more: tuple[Related, ...] = (),
-    severity: Severity | None = None,
-    part: tuple[int | str, ...] = (),
-    key: bool = False,
-    effect: str | None = None,
 ) -> Finding:
-    """A finding at a literal, with the place where it is read; its arguments are the key of the
-    literal and `names`. `part` are the steps to a part of the literal, `key` means its key."""
+    """A finding at a literal or its part, with the place where it is read, and `more` places; its
+    arguments are the key of the literal and `names`."""
     origin, cell = flow.origin, flow.cell
-    span = place_of_part(origin.span, part, key=key)
+    span = place_of_part(origin.span, part.steps, key=part.key)
     related: tuple[Related, ...] = ()
     if cell.span != origin.span and cell is not origin.cell:
         related = other_place(cell.span, f"{reader(flow)} reads it here as `{cell.key}`")
@@ -33,9 +32,7 @@ def at(
         arguments=(origin.cell.key, *names),
         help=help,
         related=(*related, *more, *(calls(node, span) if node is not None else ())),
-        severity=severity,
         node=origin.cell.path,
-        effect=effect,
     )
 
 

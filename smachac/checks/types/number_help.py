@@ -21,7 +21,7 @@ _CLOCK = re.compile(r"(\d+):([0-5]?\d)(?::([0-5]?\d))?")
 _GROUP = re.compile(r"\[([^\[\]]*)\]")
 
 
-def number_meant(text: str, wanted: Type) -> str | None:
+def suggested_number(text: str, wanted: Type) -> str | None:
     """The help for a text where a number is due; None if the text looks like no number."""
     unit, text = unit_of(wanted), text.strip()
     value, hash_sign, comment = text.partition("#")
@@ -49,7 +49,7 @@ def number_meant(text: str, wanted: Type) -> str | None:
     return f"write the number in `{unit}`, without the unit: `{float(found[1]) * factor:.6g}`"
 
 
-def list_meant(text: str) -> str | None:
+def suggested_list(text: str) -> str | None:
     """The help for a text of several numbers where a list is due; None for any other text."""
     parts = re.split(r"[\s;]+|,\s*", text.strip(" []()")[:LONGEST])
     if len(parts) < 2 or not all(re.fullmatch(_NUMBER, part) for part in parts):
@@ -57,7 +57,7 @@ def list_meant(text: str) -> str | None:
     return f"write a list without quotes: `[{', '.join(parts)}]`"
 
 
-def rotation_meant(angles: Data) -> str | None:
+def suggested_rotation(angles: Data) -> str | None:
     """The help for a rotation of three numbers: the quaternion of these angles about the fixed axes
     x, y and z (roll, pitch and yaw in rad, as `euler` "sxyz" of tf.transformations); None for
     other values. Formula: the product of the quaternions of the three rotations, yaw first."""

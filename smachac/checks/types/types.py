@@ -15,7 +15,7 @@ from smachac.checks.help_text import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.type_words import in_words
 from smachac.checks.types.clash_findings import clash_findings
-from smachac.checks.types.number_help import number_meant
+from smachac.checks.types.number_help import suggested_number
 from smachac.checks.types.type_origins import cell_owner, written
 from smachac.checks.types.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Severity
@@ -232,7 +232,7 @@ def _wrong_defaults(type_: StateType) -> Iterator[Finding]:
             continue
         help = f"write a default that fits `{held.type}`, or correct the type"
         if found.given.name == "literal" and present(found.wanted).name in ("int", "float"):
-            help = number_meant(str(found.given.args[0]), present(found.wanted)) or help
+            help = suggested_number(str(found.given.args[0]), present(found.wanted)) or help
         if isinstance(data, str) and data.lower() in ("none", "nil"):
             help = f"write `null` for no value: `{data}` is a text"
         yield Finding(

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_types import type_of_data
@@ -24,15 +25,28 @@ from smachac.analysis.type_lattice import (
 )
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree, parse
-from smachac.ir.code_places import attribute_place, node_place, python_tree
+from smachac.ir.code_places import attribute_place, node_place
 from smachac.ir.expressions import print_expression
 from smachac.ir.nodes import Data, Expression, Struct
+from smachac.ir.script_code import script_code
 from smachac.ir.types import Type
 
 LONGEST = 20_000
 """In characters. The parts of a longer value are not searched."""
 
 _TEXT_AFTER = re.compile(r"""\s*:\s*(?:"([^"\n]*)"|'([^'\n]*)'|([^\s,}\]#]+))""")
+
+
+class Part(NamedTuple):
+    """A part of a value: the steps that lead to it from the whole value. `key`: the key of the part
+    in its mapping is meant, and not its value."""
+
+    steps: tuple[int | str, ...] = ()
+    key: bool = False
+
+
+WHOLE = Part()
+"""The whole value."""
 
 
 def place_of_part(span: Span, steps: Sequence[int | str], *, key: bool = False) -> Span:
@@ -148,7 +162,7 @@ def _items(data: tuple[Data, ...], wanted: Type) -> Iterator[tuple[Data, Type]]:
 
 def place_of_fault(code: Expression, fault: Fault) -> Span:
     """The place of a fault: of the name of an attribute, or of the part of the expression."""
-    tree, part = python_tree(code.text), python_tree(print_expression(fault.expr))
+    tree, part = script_code(code.text).tree, script_code(print_expression(fault.expr)).tree
     text = ast.dump(part) if part is not None else ""
     for node in ast.walk(tree) if tree is not None else ():
         if isinstance(node, ast.expr) and type(node) is type(part) and ast.dump(node) == text:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.type_inference import Types
-from smachac.analysis.type_lattice import is_open, misfit
+from smachac.analysis.type_lattice import is_unknown, misfit
 from smachac.checks.help_text import added_remapping
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import words_of
@@ -67,7 +67,7 @@ def unread_outputs(scope: UserdataScope, missing: str) -> Iterator[UnreadOutput]
 def may_be(types: Types, scope: UserdataScope, key: str, wanted: Type) -> bool:
     """Whether the type of a key of a container, as far as it is known, is not a wrong one."""
     given = types.keys.get((scope.path, key), ANY)
-    return is_open(given) or is_open(wanted) or misfit(given, wanted) is None
+    return is_unknown(given) or is_unknown(wanted) or misfit(given, wanted) is None
 
 
 SCALARS = frozenset(["bool", "int", "float", "str"])

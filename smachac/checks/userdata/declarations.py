@@ -8,13 +8,7 @@ from dataclasses import replace
 from itertools import groupby
 from typing import Literal
 
-from smachac.analysis.accesses import (
-    callback_names,
-    leaves_with_code,
-    unreceived_outputs,
-    userdata_fields,
-)
-from smachac.analysis.code_slots import free_in
+from smachac.analysis.accesses import callback_names, leaves_with_code, unreceived_outputs
 from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.error_recovery import undeclared_reads
@@ -24,18 +18,17 @@ from smachac.analysis.unset_reads import container_name
 from smachac.analysis.uses import place_of
 from smachac.checks import notation
 from smachac.checks.help_text import CALLED_HERE, calls, did_you_mean, other_place
-from smachac.checks.outcomes.condition_outcomes import meant_default, unknown_endings
+from smachac.checks.outcomes.condition_outcomes import suggested_default, unknown_endings
 from smachac.checks.rule import rule
-from smachac.checks.userdata.unsent_keys import unsent_keys
-from smachac.checks.userdata.unwritten_keys import (
+from smachac.checks.userdata.unused_keys import (
     Unwritten,
     read_unwritten,
     unreceived_finding,
+    unsent_keys,
     unwritten_finding,
     unwritten_keys,
 )
 from smachac.checks.userdata.used_keys import sees_everything, used_in
-from smachac.checks.userdata.word_loops import words_as_lists
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import guesser, is_plain, respelt
@@ -44,6 +37,7 @@ from smachac.frontend.errors.script import number_before
 from smachac.ir import nodes
 from smachac.ir.leaf import functions, variable, variable_of
 from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, Unused
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import expressions, walk
 
 
@@ -175,7 +169,7 @@ def _misnamed_outputs(scope: UserdataScope) -> tuple[tuple[Node, Remap, str], ..
     guess = guesser(read)
     found: list[tuple[Node, Remap, str]] = []
     for child, remap, key in remapped:
-        meant = guess.sure(remap.to) if remap.to not in read else None
+        meant = guess.unique_match(remap.to) if remap.to not in read else None
         if meant is None or key.name in {input_.name for input_ in child.inputs}:
             continue
         if all(misfit(key.type, member.type) is None for member in read[meant]):
@@ -258,7 +252,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
         for key in container.outputs:
             if key.name not in set_:
                 own = {output.name for output in container.outputs}
-                meant = guesser(sorted(set_ - own)).sure(key.name)
+                meant = guesser(sorted(set_ - own)).unique_match(key.name)
                 finding = _unused(scope.path, container, key, "output", meant)
                 is_read = (scope.path, key.name) in read
                 yield replace(finding, severity=Severity.ERROR) if is_read else finding
@@ -338,7 +332,7 @@ def _unused_word(unused: Unused, root: str) -> Finding:
     """SM306 for a param or type of the script that nothing uses."""
     what, word, via, known, kept = unused
     outside = (call for call in via if call.source is not word.span.source)
-    meant = guesser(known).sure(word.text)
+    meant = guesser(known).unique_match(word.text)
     help = did_you_mean(meant)
     if help is None and known:
         help = f"the params that are used here are {listed(known)}"
@@ -384,17 +378,19 @@ def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
         if lacking is not None:
             yield lacking
             return
-    known = [userdata_fields(code.text) for code in called]
+    known = [script_code(code.text).fields for code in called]
     fields = [fields for fields in known if fields is not None]
     if len(fields) == len(known):
         used = {key for field in fields for key in (*field.read, *field.tested)}
         undeclared = [key for key, _ in undeclared_reads(leaf)]
-        used |= _meant_keys(undeclared, leaf.inputs) if undeclared else set()
+        used |= _suggested_keys(undeclared, leaf.inputs) if undeclared else set()
         arguments = [key for key in leaf.inputs if key.role == "argument"]
         if any(key.name not in used for key in arguments):
-            used |= {name.id for code in called for name in free_in(code.text)}  # SM019
+            used |= {
+                name.id for code in called for name in script_code(code.text).free_names
+            }  # SM019
         yield from _unused_keys(path, leaf, arguments, used, "input")
-    if chooses and not [*unknown_endings(path, leaf)] and meant_default(leaf) is None:
+    if chooses and not [*unknown_endings(path, leaf)] and suggested_default(leaf) is None:
         yield from _unused_outcomes(path, leaf, conditions)
 
 
@@ -403,7 +399,7 @@ def _without_conditions(path: str, leaf: Leaf) -> Finding | None:
     possible = {variable(leaf, "default_outcome"), leaf.catches}
     outcomes = [outcome for outcome in leaf.outcomes if outcome.name not in possible]
     held = variable_of(leaf, "conditions")
-    if not outcomes or held is None or meant_default(leaf) is not None:
+    if not outcomes or held is None or suggested_default(leaf) is not None:
         return None
     names = [outcome.name for outcome in outcomes]
     keys = [name if is_plain(name) else f"'{name}'" for name in names]
@@ -448,7 +444,30 @@ def _unused_keys(
     return (_unused(path, leaf, key, role) for key in keys if key.name not in names)
 
 
-def _meant_keys(wrong: Iterable[str], known: Iterable[Key]) -> set[str]:
+def _suggested_keys(wrong: Iterable[str], known: Iterable[Key]) -> set[str]:
     """The likely keys behind misspelt names (SM308, SM310)."""
     guess = guesser(key.name for key in known)
     return {name for key in wrong if (name := guess(key)) is not None}
+
+
+def words_as_lists(path: str, loop: nodes.Iterator) -> Iterator[Finding]:
+    """The finding on an iterator over the name of one of its input keys, which its state does not
+    read."""
+    read = {key.name for child in loop.children for key in child.inputs}
+    for key in loop.inputs if not loop.sugar else ():
+        if loop.items is not None and loop.items.data == (key.name,) and key.name not in read:
+            yield word_as_list(path, loop, key.name)
+
+
+def word_as_list(path: str, loop: nodes.Iterator, key: str) -> Finding:
+    """The finding on a loop over one text, which is the name of a key."""
+    return Finding(
+        span=loop.items_span,
+        message=f"`{loop.name}` runs once, for the text `{key}`, not for the items of the key"
+        f" `{key}`",
+        arguments=("items", key),
+        help=f"write `it: {key}`",
+        effect="the state gets the name of the key in place of an item",
+        related=calls(loop, loop.items_span),
+        node=path,
+    )

@@ -40,7 +40,7 @@ def missing_together(found: Iterable[Missing]) -> Iterator[tuple[Missing, ...]]:
         lacking = tuple(
             missing
             for missing in every
-            if (missing.cause == "nowhere" and guess.sure(missing.key) is None)
+            if (missing.cause == "nowhere" and guess.unique_match(missing.key) is None)
             or (missing.cause == "unset" and counts(missing))
         )
         if len(lacking) > 1:

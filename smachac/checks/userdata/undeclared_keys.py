@@ -6,9 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Literal
 
 from smachac.analysis.accesses import callback_names, leaves_with_code, scripted_steps
-from smachac.analysis.code_slots import undeclared_slot_reads
+from smachac.analysis.code_slots import CodeSlot, swapped, undeclared_slot_reads
 from smachac.analysis.context import Context
 from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes
+from smachac.analysis.function_slots import named_functions
 from smachac.checks.classes.types_with_code import first_of_each, leaves_by_type, used_here
 from smachac.checks.classes.undeclared_accesses import (
     DICTIONARY_METHODS,
@@ -20,15 +21,15 @@ from smachac.checks.help_text import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.types.value_places import place_of_part
 from smachac.checks.userdata.candidate_keys import keys_around
-from smachac.checks.userdata.function_keys import unknown_function_reads
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.code_places import key_place
+from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.leaf import functions, key_names, variable_of
-from smachac.ir.nodes import Container, Leaf, StateType, Struct
+from smachac.ir.nodes import Container, Leaf, Node, StateType, Struct
 
 
 @rule("SM308", "lossy-write", Severity.ERROR)
@@ -238,7 +239,7 @@ def _undeclared_accesses(
             span = key_place(code, key)
             added, near = listing([leaf], "input_keys", key), None
             if key not in around:
-                near = guess.sure(key)
+                near = guess.unique_match(key)
                 added += f", and set it before, for example in `userdata: {{{key}: ...}}`"
             yield Finding(
                 span=span,
@@ -275,3 +276,40 @@ def _unlisted(context: Context, role: Literal["input", "output"]) -> Iterator[Fi
                 related=used_here(leaf),
                 node=path,
             )
+
+
+def unknown_function_reads(context: Context) -> Iterator[Finding]:
+    """The keys that a function of the user reads, and that no state which calls it has as an input
+    (SM310)."""
+    calls_of: dict[str, list[tuple[str, Node, CodeSlot, FunctionFacts]]] = {}
+    for call in named_functions(context):
+        _, node, slot, facts = call
+        if slot.arguments is None or slot.arguments[:1] != ("userdata",):
+            continue
+        if facts.reads and not swapped(facts.parameters, slot.arguments):  # SM317
+            calls_of.setdefault(slot.code.text, []).append(call)
+    for places in calls_of.values():
+        known = {key.name for _, node, _, _ in places for key in (*node.inputs, *node.outputs)}
+        path, node, slot, facts = places[0]
+        around = path.rpartition("/")[0]
+        used = {word.text for word in facts.reads}
+        unread = [key.name for key in node.inputs if key.name not in used]
+        guess = guesser(unread)
+        inside = context.types.cells.keys()
+        for word in {read.text: read for read in reversed(facts.reads)}.values():
+            if word.text not in known:
+                yield Finding(
+                    span=word.span,
+                    message=f"`{facts.word.text}` reads `{word.text}`, which is not an input key of"
+                    f" `{node.name}`",
+                    arguments=(word.text,),
+                    help=did_you_mean(guess(word.text))
+                    or did_you_mean(
+                        unread[0]
+                        if len(unread) == 1 and (around, word.text) not in inside
+                        else None
+                    )
+                    or listing([node], "input_keys", word.text),
+                    related=other_place(slot.code.span, f"`{node.name}` calls it here"),
+                    node=path,
+                )

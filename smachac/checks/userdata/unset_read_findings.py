@@ -10,7 +10,7 @@ from itertools import islice
 from smachac.analysis.def_use import written_on
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.type_inference import Types
-from smachac.analysis.type_lattice import is_open
+from smachac.analysis.type_lattice import is_unknown
 from smachac.analysis.unset_reads import Missing, Witness, container_name, reader_at
 from smachac.checks import notation
 from smachac.checks.edits import likely, listing, with_field, with_input, with_remapping
@@ -21,8 +21,8 @@ from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser, words_of
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import Container, Node
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import outcome_names, outer_inputs
 from smachac.ir.types import ANY, Type
 
@@ -74,7 +74,7 @@ def unset_read(
         unread = unread_output(scope, missing.key) if is_searched else None
         fitting = _fitting_keys(missing, witness, types) if is_searched else []
         if isinstance(reader.node, nodes.Iterator) and isinstance(
-            python_tree(missing.key), ast.Lambda
+            script_code(missing.key).tree, ast.Lambda
         ):
             help = f"quotes make it the name of a key: write code as '`{missing.key}`'"
         elif unread is not None:
@@ -143,7 +143,7 @@ def _fitting_keys(missing: Missing, witness: Witness, types: Types) -> list[str]
     if declared is None or declared.span.source is reader.node.span.source:
         return []
     wanted = types.inputs.get((reader.path, reader.key), ANY)
-    if witness.inner is not None and is_open(wanted):
+    if witness.inner is not None and is_unknown(wanted):
         wanted = types.inputs.get((witness.inner.path, witness.inner.key), ANY)
     return fitting_keys(types, missing, reader.node, wanted)
 
@@ -161,7 +161,7 @@ def fitting_keys(types: Types, missing: Missing, node: Node, wanted: Type) -> li
         is_read = key in scope.uses.read or key in scope.outputs
         if not may_be(types, scope, key, wanted) or (not is_read and near(key) is not None):
             continue
-        if not is_open(wanted) and not is_open(types.keys.get((scope.path, key), ANY)):
+        if not is_unknown(wanted) and not is_unknown(types.keys.get((scope.path, key), ANY)):
             (known if is_read else both).append(key)
         elif not is_read:
             unread.append(key)

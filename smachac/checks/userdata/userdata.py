@@ -1,10 +1,10 @@
-"""Rules on the flow of userdata: unset keys, remappings, keys that do not cross a container."""
+"""Rules on the flow of userdata: unset keys (SM301), remappings (SM302), and keys that do not cross
+a container (SM303, SM307). The flow is that of analysis/definite_assignment.py."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cache
-from pathlib import PurePath
 
 from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
@@ -18,7 +18,7 @@ from smachac.checks.ros.message_keys import remapped_fields
 from smachac.checks.rule import rule
 from smachac.checks.userdata.initial_presets import missing_together, together_finding
 from smachac.checks.userdata.unset_read_findings import fitting_keys, unset_read
-from smachac.checks.userdata.unwritten_keys import read_unwritten
+from smachac.checks.userdata.unused_keys import read_unwritten
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import NOWHERE, Span, Word
@@ -201,7 +201,7 @@ def _lacking(path: str, node: Container, keys: Sequence[str]) -> Finding:
     """SM302 for keys in the remapping of a container that it lacks as inputs."""
     first = next(remap for remap in node.remaps if remap.key in keys)
     source = node.children[0].span.source
-    file = PurePath(source.name).name
+    file = source.file_name
     owner = f"`{node.name}`" if source is first.span.source else f"the state of `{file}`"
     inputs = [key.name for key in node.inputs if key.span.source is not NOWHERE.source]
     names = ", ".join([*inputs, *keys])
@@ -230,9 +230,11 @@ def _unknown_remaps_of(path: str, node: Node) -> Iterator[Finding]:
     own = list(dict.fromkeys(key.name for key in (*node.inputs, *node.outputs)))
     unknown = unknown_remaps(node)
     guess = guesser(sorted({*own} - {remap.key for remap in node.remaps}))
-    turned = [remap for remap in unknown if remap.to in own and guess.sure(remap.key) is None]
+    turned = [
+        remap for remap in unknown if remap.to in own and guess.unique_match(remap.key) is None
+    ]
     for remap in unknown:
-        meant, certain = guess(remap.key), guess.sure(remap.key)
+        meant, certain = guess(remap.key), guess.unique_match(remap.key)
         known = f"use one of its keys: {listed(own)}" if own else "remove it: the state has no keys"
         if remap in turned:
             if remap is not turned[0]:

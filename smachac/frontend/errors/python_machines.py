@@ -20,7 +20,7 @@ from smachac.diagnostics.wording import listed
     "SM801",
     "text-as-list",
     Severity.ERROR,
-    firm=False,
+    unsuppressible=False,
     effect="the machine stops with an error, or a state has outcomes of one letter",
 )
 def text_as_list(word: Word) -> Finding:
@@ -55,7 +55,7 @@ def text_as_list(word: Word) -> Finding:
     "SM802",
     "shared-transitions",
     Severity.ERROR,
-    firm=False,
+    unsuppressible=False,
     effect="SMACH raises InvalidTransitionError: the program stops when it adds the second state",
 )
 def shared_transitions(span: Span, outcome: str, first: Span | None) -> Finding:
@@ -104,7 +104,7 @@ def shared_transitions(span: Span, outcome: str, first: Span | None) -> Finding:
     "SM803",
     "missing-member",
     Severity.ERROR,
-    firm=False,
+    unsuppressible=False,
     effect="Python raises NameError, AttributeError or ImportError: the program stops",
 )
 def missing_member(module: str, words: Sequence[Word]) -> Finding:
@@ -165,7 +165,7 @@ def missing_member(module: str, words: Sequence[Word]) -> Finding:
     )
 
 
-@problem("SM804", "repeated-key", Severity.ERROR, firm=False)
+@problem("SM804", "repeated-key", Severity.ERROR, unsuppressible=False)
 def repeated_key(word: Word, first: Span | None) -> Finding:
     """A dictionary of transitions or remappings has a key twice: Python keeps the last value.
 

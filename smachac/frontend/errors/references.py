@@ -99,7 +99,7 @@ def script_not_found(
         help=help
         or _package_of(word)
         or _where(word, f"{word.text}.yml", searched, names, "scripts", other),
-        edits=respelt(word, guesser_of(tuple(names)).sure(word.text)),
+        edits=respelt(word, guesser_of(tuple(names)).unique_match(word.text)),
     )
 
 
@@ -199,7 +199,7 @@ def template_not_found(
         message=f"the template `{word.text}` was not found",
         arguments=(word.text,),
         help=help or _where(word, f"{word.text}.yml", searched, names, "templates", other),
-        edits=() if help else respelt(word, guesser_of(tuple(names)).sure(word.text)),
+        edits=() if help else respelt(word, guesser_of(tuple(names)).unique_match(word.text)),
     )
 
 

@@ -209,7 +209,7 @@ def unknown_variable(
     """
     own = sorted(choice.own)
     names = sorted({*known, *own})
-    spelt = guesser_of(tuple(names)).sure(word.text)
+    spelt = guesser_of(tuple(names)).unique_match(word.text)
     sure = choice.meant or spelt or choice.likely
     number = number_before(word)
     if number:
@@ -249,7 +249,7 @@ def unknown_variable(
 
 def unused_variable(word: Word, owner: Owner, known: Iterable[str]) -> Diagnostic:
     """SM003 for a variable that a template, which accepts any, does not use."""
-    sure = guesser_of(tuple(sorted({*known}))).sure(word.text)
+    sure = guesser_of(tuple(sorted({*known}))).unique_match(word.text)
     return unknown_variable(
         word,
         owner,

@@ -165,7 +165,7 @@ def unknown_code(code: Word, known: Iterable[str]) -> Diagnostic:
 
 
 def vain_allowance(code: Word) -> Diagnostic:
-    """SM022 for an allowance of a firm finding."""
+    """SM022 for an allowance of an unsuppressible finding."""
     message = f"{code.text} cannot be allowed: no program can be generated with this fault"
     help = "correct the fault, and remove the comment"
     return bad_allowance(code.span, message, help, ("firm", code.text))

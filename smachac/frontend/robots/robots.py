@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import Any, Literal, TypeAlias, TypeVar
 
 from smachac.diagnostics.diagnostic import Related, Report, did_you_mean, did_you_mean_file
@@ -95,7 +95,7 @@ DataKind: TypeAlias = Literal["robot", "scene", "faults"]
 
 def check_data_file(source: Source, kind: DataKind, library: Library, report: Report) -> None:
     """Check a file of data in itself: a mistake is reported at its place in the file."""
-    word = Word(PurePath(source.name).name, Span(source, 0, 0))
+    word = Word(source.file_name, Span(source, 0, 0))
     reader = _Reader(source, library, report)
     if kind == "robot":
         reader.described(word, source)

@@ -47,12 +47,12 @@ _VARIABLE = re.compile(r"(\.?)\{(\w+)\}")
 """A part of a claim that the value of a variable replaces."""
 
 
-KeptNodes: TypeAlias = "dict[tuple[Span, tuple[Span, ...]], tuple[State, Node]]"
+NodeCache: TypeAlias = "dict[tuple[Span, tuple[Span, ...]], tuple[State, Node]]"
 """The nodes with the states that they were made from, by the spans of the name and of the calls
 around."""
 
 
-def lower(script: Script, kept: KeptNodes | None = None) -> Machine:
+def lower(script: Script, kept: NodeCache | None = None) -> Machine:
     """The machine that a script describes. `kept` are the nodes of the machine before a change,
     which become those of this one: a state that is the same object has the same node."""
     base = script.base
@@ -271,8 +271,8 @@ def _without_optional(child: Node, state: State, outcomes: frozenset[str]) -> No
 class _Nodes(NamedTuple):
     """The kept nodes of the machine before a change, and those of this one."""
 
-    old: KeptNodes
-    new: KeptNodes
+    old: NodeCache
+    new: NodeCache
 
 
 def _container(state: State, owner: ContainerKind, kept: _Nodes) -> Container:
@@ -491,8 +491,8 @@ def _with_error(node: Node, words: Iterable[Word]) -> Node:
     neither has such an outcome nor is open."""
     for word in words:
         if word.text == ERROR:
-            is_open = isinstance(node, Leaf) and node.open
-            own = is_open or ERROR in outcome_names(node)
+            has_no_interface = isinstance(node, Leaf) and node.open
+            own = has_no_interface or ERROR in outcome_names(node)
             return node if own else _catching(node, word.span)
     return node
 

@@ -54,5 +54,7 @@ def _exits(states: Tree) -> Iterator[Word]:
                 targets += [target for _, target in pairs_of(field.value)]
     guess = guesser(names)
     yield from (
-        target for target in targets if target.text not in names and not guess.sure(target.text)
+        target
+        for target in targets
+        if target.text not in names and not guess.unique_match(target.text)
     )

@@ -110,12 +110,12 @@ def look_up_word(tree: Tree) -> Word | None:
     return None
 
 
-def look_up_meant(tree: Tree, scope: Scope, report: Report) -> Tree | None:
+def recovered_look_up(tree: Tree, scope: Scope, report: Report) -> Tree | None:
     """The value of `[param, x]`, where `params` is misspelt and `x` is a param in scope, which is
     reported; None for other trees."""
     match tree:
         case Seq(items=(Scalar(value=str(first), plain=True) as one, Scalar(value=str(name)))):
-            if name not in scope or guesser_of(("params",)).sure(first) is None:
+            if name not in scope or guesser_of(("params",)).unique_match(first) is None:
                 return None
             word = Word(first, one.span)
             message = f"`[{first}, {name}]` is a list of two texts, not a look-up"
@@ -159,7 +159,7 @@ def fill_in(tree: Tree, scope: Scope, report: Report, *, names: bool = False) ->
     word = look_up_word(tree)
     if word is not None:
         return _found(word, scope, report)
-    meant = look_up_meant(tree, scope, report) if scope else None
+    meant = recovered_look_up(tree, scope, report) if scope else None
     if meant is not None:
         return meant
     items = tuple(fill_in(item, scope, report) for item in tree.items)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from functools import cache
 from typing import TYPE_CHECKING, Any, cast
 
 from smachac.diagnostics.diagnostic import Report, did_you_mean
@@ -16,7 +15,7 @@ from smachac.frontend.errors.script import wrong_shape
 from smachac.frontend.loader import Library
 from smachac.frontend.text.fields import kind_of
 from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
-from smachac.grammars import load
+from smachac.grammars import parser_of
 from smachac.ir.properties import (
     After,
     AlwaysEnds,
@@ -33,7 +32,7 @@ from smachac.ir.properties import (
 )
 
 if TYPE_CHECKING:
-    from smachac.grammars.standalone.lalr import Lark
+    pass
 
 FORMS = ("never", "before", "after", "whenever", "at_most", "always_ends")
 OPTIONS = ("name", "exceptions", "stops")
@@ -333,7 +332,7 @@ class _Reader:
         if is_known_wrong(tree):
             return None
         try:
-            parsed: Any = _parser().parse(text)
+            parsed: Any = parser_of("property").parse(text)
         except LarkError:
             message = f"`{text}` does not name an event"
             help = "write a state, `PICK/GRASP`, an outcome, `PICK:aborted`, or `tag NAME`,"
@@ -367,8 +366,3 @@ def _name(tree: Any) -> str:
     if token.type != "STRING":
         return str(token)
     return re.sub(r"\\(.)", r"\1", token[1:-1])
-
-
-@cache
-def _parser() -> Lark:
-    return load("property")

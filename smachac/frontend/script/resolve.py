@@ -32,7 +32,6 @@ from smachac.frontend.messages.message_definitions import (
 )
 from smachac.frontend.resolved_script import TIMER, Script, State, Sugar, no_states, unknown_state
 from smachac.frontend.schema import FieldOwner
-from smachac.frontend.script.kept import Kept, KeptCall, same_objects
 from smachac.frontend.script.params import (
     MAX_FILLED,
     MAX_FILLED_BY_STATE,
@@ -44,13 +43,14 @@ from smachac.frontend.script.params import (
     fixed_params,
     is_flat,
     is_too_deep,
-    look_up_meant,
     look_up_word,
     look_ups,
     params_of,
+    recovered_look_up,
     size_up_to,
 )
 from smachac.frontend.script.properties import properties_of
+from smachac.frontend.script.resolve_cache import CachedCall, ResolveCache, same_objects
 from smachac.frontend.script.state_fields import (
     Entries,
     FieldTable,
@@ -59,11 +59,11 @@ from smachac.frontend.script.state_fields import (
     has_unknown_outcomes,
     has_wrong_transitions,
     is_field,
-    params_meant,
     read_fields,
+    recovered_params,
     second_key,
     with_further_states,
-    with_meant_fields,
+    with_recovered_fields,
 )
 from smachac.frontend.script.sub_scripts import (
     SUB_SCRIPT_HELP,
@@ -151,7 +151,7 @@ def resolve(
     tree: Tree | None,
     library: Library,
     report: Report,
-    kept: Kept | None = None,
+    kept: ResolveCache | None = None,
 ) -> Script | None:
     """The script that a tree describes, without its wrong parts; None if it is no script. `kept`
     are the results of the last reading, which become those of this one."""
@@ -173,7 +173,7 @@ def resolve(
     kind = kind_of_tree(tree)
     if kind in OTHER_FILES:
         what, help = OTHER_FILES[kind]
-        help = help.replace("FILE", PurePath(source.name).name)
+        help = help.replace("FILE", source.file_name)
         message = f"a script is expected; this is {what}"
         report.append(wrong_shape(tree.entries[0].key.span, message, help, arguments=(kind,)))
         return None
@@ -199,7 +199,7 @@ class _Resolver:
     that look-ups have added.
     """
 
-    def __init__(self, library: Library, report: Report, kept: Kept | None) -> None:
+    def __init__(self, library: Library, report: Report, kept: ResolveCache | None) -> None:
         self.library = library
         self.report = report
         self.kept = kept
@@ -213,7 +213,7 @@ class _Resolver:
         self.tables: dict[tuple[FieldOwner, str, tuple[str, ...]], FieldTable] = {}
         self.parsed: dict[tuple[str, str], tuple[Tree | None, bool]] = {}
         self.templates: tuple[Sequence[str], Sequence[str]] | None = None
-        self.calls: dict[Span, KeptCall] = {}
+        self.calls: dict[Span, CachedCall] = {}
         self.others: dict[str, StateType | None] = {}  # types that the script need not use
         self.unknown: set[str] = set()  # the templates that were not found
         self.unread: set[str] = set()  # the sub-scripts and templates whose fault is reported
@@ -304,7 +304,7 @@ class _Resolver:
         of the call, if the state is that of a sub-script."""
         if "params" in own:
             own["params"] = self.limit_depth(own["params"])
-        params = own.get("params") or params_meant(own)
+        params = own.get("params") or recovered_params(own)
         begin = begin or self.uses.mark(self.report)
         scope = child_scope(around.scope, params.value, self.report) if params else around.scope
         entries = own.copy()
@@ -324,7 +324,7 @@ class _Resolver:
             entries |= self.lists(own, scope, type_)
         table = self.table(entries, owner, type_)
         if table.others:
-            entries = with_meant_fields(entries, owner, type_, self.report)
+            entries = with_recovered_fields(entries, owner, type_, self.report)
             table = self.table(entries, owner, type_)
         self.uses.type(type_)
         if scope:
@@ -333,7 +333,7 @@ class _Resolver:
             self.count += 1
         via = around.via
         fields = read_fields(
-            name, entries, owner, type_, table, self.report, scope=scope, inner=around.inner
+            name, entries, type_, table, self.report, scope=scope, inner=around.inner
         )
         presets: tuple[Preset, ...] = fields.get("userdata", ())
         self.keys += len(presets)
@@ -373,7 +373,7 @@ class _Resolver:
         """The field with values in place of its look-ups and aliases of types. `flat`: see
         `is_flat`."""
         if flat:
-            meant = look_up_meant(entry.value, scope, self.report) if scope else None
+            meant = recovered_look_up(entry.value, scope, self.report) if scope else None
             entry = entry if meant is None else Entry(entry.key, meant)
             return typed(key, entry, self.aliases, self.report)
         row = schema.VARIABLES.get(key)
@@ -508,7 +508,7 @@ class _Resolver:
         outer = self.texts, self.sources, self.types, self.calls, self.uses, self.most_keys
         self.texts, self.sources, self.types, self.calls = {}, {}, {}, {}
         self.uses, self.most_keys = Uses(), ()
-        new = KeptCall(
+        new = CachedCall(
             own=dict(own),
             around=around,
             scope=around.scope,
@@ -529,7 +529,7 @@ class _Resolver:
             self.calls[name.span] = new
         return new.state
 
-    def is_current(self, kept: KeptCall, own: dict[str, Entry], around: _Environment) -> bool:
+    def is_current(self, kept: CachedCall, own: dict[str, Entry], around: _Environment) -> bool:
         """Whether reading a call would give the same state again."""
         return (
             same_objects(kept.own, own)
@@ -540,7 +540,7 @@ class _Resolver:
             and all(self.state_type(name) is type_ for name, type_ in kept.types.items())
         )
 
-    def add(self, call: KeptCall) -> None:
+    def add(self, call: CachedCall) -> None:
         """Add what the reading of a call has found to the part around it."""
         self.texts |= call.texts
         self.sources |= call.sources
@@ -718,7 +718,7 @@ class _Resolver:
         if found is None:
             searched, names = self.known_templates()
             known = [*names, *([] if role else schema.CONTAINERS)]
-            near = guesser_of(tuple(known)).sure(word.text)
+            near = guesser_of(tuple(known)).unique_match(word.text)
             is_known = word.text in self.unknown or len(self.unknown) >= MOST_EXPLAINED
             other = (
                 ""

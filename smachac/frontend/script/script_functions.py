@@ -15,9 +15,9 @@ from smachac.frontend.loader import Library
 from smachac.frontend.resolved_script import State
 from smachac.frontend.types.smacha_meta import extended
 from smachac.ir.argument_parts import argument_uses, own_names, result_of
-from smachac.ir.code_places import python_tree
 from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.nodes import Data, Expression, StateType, Struct
+from smachac.ir.script_code import script_code
 from smachac.pysource.flow import Flows
 from smachac.pysource.functions import alternatives, is_plain, returns_of
 from smachac.pysource.modules import Module, OwnClass, find_function, template_module
@@ -89,7 +89,7 @@ def _facts(
 ) -> Iterator[FunctionFacts | None]:
     """The facts about the function of a name in each module; None where it has none, or one that is
     not called as it is defined."""
-    called = python_tree(text)
+    called = script_code(text).tree
     for module in modules if called is not None else ():
         try:
             found = find_function(module, called, library) if called is not None else None

@@ -89,6 +89,7 @@ class FieldTable(NamedTuple):
     text that programs contain without quotes.
     """
 
+    owner: FieldOwner
     others: bool
     shapes: tuple[tuple[str, str], ...]
     missing: tuple[str, ...]
@@ -114,6 +115,7 @@ def field_table(names: Collection[str], owner: FieldOwner, type_: StateType) -> 
         if row is not None and (key in own or _is_field(key, owner, type_))
     ]
     return FieldTable(
+        owner=owner,
         others=any(key not in own and key not in known for key in names),
         shapes=tuple(row for row in shapes if row[0] not in _READ_ELSEWHERE),
         missing=tuple(key for key in required if key not in names),
@@ -129,7 +131,6 @@ def field_table(names: Collection[str], owner: FieldOwner, type_: StateType) -> 
 def read_fields(
     name: Word,
     entries: Entries,
-    owner: FieldOwner,
     type_: StateType,
     table: FieldTable,
     report: Report,
@@ -142,14 +143,15 @@ def read_fields(
     `table` is that of the names of `entries`. `scope` are the params in its scope; `inner` is its
     name in the sub-script, if it is called.
     """
+    owner = table.owner
     before = len(report)
     rejected: set[str | None] = set()
     if table.others:
         read, rejected = _known_fields(entries, owner, type_, report)
     else:
-        read = _fields_of_schema(table, entries, owner, report)
+        read = _fields_of_schema(table, entries, report)
     if len(report) > before and "transitions" in read:
-        read["transitions"] = _meant_booleans(read["transitions"], type_, report, before)
+        read["transitions"] = _recovered_booleans(read["transitions"], type_, report, before)
     if owner != "base" or read.get("name") is None or is_known_wrong(entries["name"].value):
         read["name"] = name
     if owner == "state" and "default_outcome" in entries and "default_outcome" not in read:
@@ -171,7 +173,7 @@ def read_fields(
     if missing:
         _report_missing(missing, entries, owner, type_, read, inner, report)
     if table.variables:
-        read["variables"] = tuple(_variables(table, entries, owner, type_))
+        read["variables"] = tuple(_variables(table, entries, type_))
     if owner == "base" and "function_name" in entries:
         check_unquoted(entries["function_name"].value, "name", report)
     for key, variable in table.unquoted:
@@ -181,7 +183,7 @@ def read_fields(
     return read
 
 
-def _meant_booleans(steps: Pairs, type_: StateType, report: Report, begin: int) -> Pairs:
+def _recovered_booleans(steps: Pairs, type_: StateType, report: Report, begin: int) -> Pairs:
     """The transitions, with the outcomes `true` and `false` of the type in place of other words for
     booleans, such as `yes`; the help of their finding (SM004) has the outcome that is meant. The
     findings of this state begin at the number `begin`."""
@@ -206,7 +208,7 @@ def accepts(type_: StateType, name: str) -> bool:
     return name in type_.variables or type_.any_variable
 
 
-def with_meant_fields(
+def with_recovered_fields(
     entries: dict[str, Entry], owner: FieldOwner, type_: StateType, report: Report
 ) -> dict[str, Entry]:
     """The fields, with those of unknown names also under the names that are meant, where that is
@@ -224,7 +226,9 @@ def with_meant_fields(
     if not unknown:
         return entries
     guess = guesser_of((*schema.names_for(owner), *type_.variables))
-    meant = {guess.sure(str(entries[key].key.value)): entries[key] for key in reversed(unknown)}
+    meant = {
+        guess.unique_match(str(entries[key].key.value)): entries[key] for key in reversed(unknown)
+    }
     roles: dict[str, str] = {
         variable.role: name for name, variable in type_.variables.items() if variable.role
     }
@@ -235,13 +239,13 @@ def with_meant_fields(
     return {name: entry for name, entry in meant.items() if name is not None} | entries
 
 
-def params_meant(entries: Entries) -> Entry | None:
+def recovered_params(entries: Entries) -> Entry | None:
     """The field that is certainly a misspelt `params` (SM003)."""
     if _ALL_FIELDS.issuperset(entries):
         return None
     for key, entry in entries.items():
         is_map = key not in schema.VARIABLES and isinstance(entry.value, Map)
-        if is_map and guesser_of(FIELDS_OF_STATES).sure(key) == "params":
+        if is_map and guesser_of(FIELDS_OF_STATES).unique_match(key) == "params":
             return entry
     return None
 
@@ -274,7 +278,7 @@ def _known_fields(
     """The fields of the schema, read, and for each unknown field the one that it looks like. An
     outcome beside the transitions is read as one of them."""
     read: dict[str, Any] = {}
-    strays: list[tuple[Word, Word]] = []
+    misplaced_transitions: list[tuple[Word, Word]] = []
     meant: set[str | None] = set()
     known_here, unknown = schema.OWN_FIELDS[owner], 0
     for key, entry in entries.items():
@@ -308,7 +312,7 @@ def _known_fields(
             help = f"`{word.text}` is an input key: {as_key}" if as_key is not None else None
             target = name_of(entry.value) if key in _outcomes(entries, type_) else None
             if target is not None:
-                strays.append((word, target))
+                misplaced_transitions.append((word, target))
                 help = f"`{word.text}` is an outcome: write its transition inside `transitions:`"
             needed = sure if sure is not None and _is_required(sure, owner, type_) else None
             free = [name for name in (*known, *own) if name not in entries]
@@ -319,19 +323,17 @@ def _known_fields(
             meant.add(guesser_of((*dict.fromkeys((*known, *own)),))(word.text))
             if len(own) == 1:
                 meant.add(own[0])  # the message names the only variable
-    if strays:
-        read["transitions"] = (*read.get("transitions", ()), *strays)
+    if misplaced_transitions:
+        read["transitions"] = (*read.get("transitions", ()), *misplaced_transitions)
     return read, meant
 
 
-def _fields_of_schema(
-    table: FieldTable, entries: Entries, owner: FieldOwner, report: Report
-) -> dict[str, Any]:
+def _fields_of_schema(table: FieldTable, entries: Entries, report: Report) -> dict[str, Any]:
     """The fields of the schema, read, of a state without unknown fields."""
     read: dict[str, Any] = {}
     for key, shape in table.shapes:
         value = _read(key, shape, entries[key], report)
-        if key in _FIELDS and (key != "name" or owner == "base"):
+        if key in _FIELDS and (key != "name" or table.owner == "base"):
             read[key] = value
     return read
 
@@ -514,13 +516,11 @@ def _check_list(value: Tree, report: Report) -> None:
         wrong(value, "keys", report)
 
 
-def _variables(
-    table: FieldTable, entries: Entries, owner: FieldOwner, type_: StateType
-) -> Iterator[Variable]:
+def _variables(table: FieldTable, entries: Entries, type_: StateType) -> Iterator[Variable]:
     """The variables of the state type that a script sets: all fields that are not the owner's."""
     for name, known in table.variables:
         entry, row = entries[name], schema.VARIABLES.get(name)
-        named = row is not None and row.shape == "name" and _is_field(name, owner, type_)
+        named = row is not None and row.shape == "name" and _is_field(name, table.owner, type_)
         if named and not isinstance(entry.value, Scalar):
             continue  # reported
         role = known.role if known is not None else ""

@@ -53,7 +53,7 @@ UNKNOWN_TRIES = 2
 
 NO_OUTCOMES = "add `outcomes: [...]` to this state"
 
-MEANT_PARTS: Mapping[str, str] = {
+SUGGESTED_PARTS: Mapping[str, str] = {
     word: part
     for part, words in {
         "max": "attempts count limit max_attempts max_retries max_tries retries times tries",
@@ -260,11 +260,11 @@ def duration(tree: Tree, report: Report) -> float | None:
     found = durations.seconds(tree.value) if isinstance(tree, Scalar) else None
     if found is not None:
         return found
-    wrong(tree, "duration", report, _duration_meant(tree))
+    wrong(tree, "duration", report, _suggested_duration(tree))
     return None
 
 
-def _duration_meant(tree: Tree) -> str | None:
+def _suggested_duration(tree: Tree) -> str | None:
     """The help for a duration with another word for its unit, such as `20 sec`, and for one of
     several parts, such as `1m30s`."""
     if isinstance(tree, Seq | Map):
@@ -352,7 +352,7 @@ def _parts(
             parts[word.text] = item.value
             continue
         others = tuple(name for name in known if name not in written)
-        meant = _part_meant(word.text, others)
+        meant = _suggested_part(word.text, others)
         if meant is None and paired:
             report.append(
                 unknown_variable(word, owner, others, Choice(likely=paired, required=paired))
@@ -411,16 +411,16 @@ def _paired(unknown: list[Entry], written: set[str], required: Mapping[str, str]
     return name if is_number == (name == "max") else ""
 
 
-def _part_meant(word: str, parts: tuple[str, ...]) -> str | None:
+def _suggested_part(word: str, parts: tuple[str, ...]) -> str | None:
     """The part of sugar that a word is meant for: another word for it, its misspelt name, or a
     misspelt other word; None if it is none of these."""
-    meant = MEANT_PARTS.get(word)
+    meant = SUGGESTED_PARTS.get(word)
     if meant in parts:
         return meant
     near = guesser(parts)(word)
     if near is None:
-        words = [other for other, part in MEANT_PARTS.items() if part in parts]
-        near = MEANT_PARTS.get(guesser(words)(word) or "")
+        words = [other for other, part in SUGGESTED_PARTS.items() if part in parts]
+        near = SUGGESTED_PARTS.get(guesser(words)(word) or "")
     return near
 
 
@@ -435,7 +435,7 @@ def _pair_for(entry: Entry) -> str | None:
         return f"write `for_each: {{item: {sentence[1]}, in: {sentence[2]}}}`"
     (word, *others), items = [str(entry.key.value) for entry in entries], entries[0].value.span.text
     parts = ("in", "item", "on")
-    if any(name in parts or _part_meant(name, parts) for name in (word, *others)):
+    if any(name in parts or _suggested_part(name, parts) for name in (word, *others)):
         return None
     if "\n" in items:
         return None

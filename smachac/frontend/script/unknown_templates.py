@@ -24,7 +24,7 @@ CALLED_HERE = "in the sub-script called here"
 MOST_TYPES = 200
 """Among more types than these, none is proposed: each has to be read."""
 
-MOST_MEANT = 3
+MOST_SUGGESTED = 3
 """If more types than these have the names that a state uses, none is proposed."""
 
 
@@ -46,12 +46,12 @@ def types_with_the_names(
         return (), ()
     steps = pairs_of(entries["transitions"].value) if "transitions" in entries else ()
     ends = {outcome.text for outcome, _ in steps}
-    types = [each for name in names if (each := find(name, used)) is not None]
-    fitting = [each for each in types if _has(each, used, ends)]
+    types = [type_ for name in names if (type_ := find(name, used)) is not None]
+    fitting = [type_ for type_ in types if _has(type_, used, ends)]
     common = words_of(word) - {"state"}
-    near = [each for each in fitting if words_of(each.name) & common]
-    found = tuple(each.name for each in near or fitting)
-    return (found, used) if len(found) <= MOST_MEANT else ((), ())
+    near = [type_ for type_ in fitting if words_of(type_.name) & common]
+    found = tuple(type_.name for type_ in near or fitting)
+    return (found, used) if len(found) <= MOST_SUGGESTED else ((), ())
 
 
 def type_of_other_framework(
@@ -98,7 +98,7 @@ def unknown_template(
     help = ""
     if word.text in scripts:
         help = f"`{word.text}` is a sub-script: write `script: {word.text}`"
-    elif not other and guesser_of(tuple(known)).sure(word.text) is None:
+    elif not other and guesser_of(tuple(known)).unique_match(word.text) is None:
         help = type_of_other_framework(word.text, entries, types, find) if entries else ""
         fitting, used = types_with_the_names(entries, word.text, types, find)
         if fitting and not help:
@@ -147,7 +147,7 @@ def missing_template(
     owner = Owner(state.text, f"`{state.text}`")
     place, help = state.span, f"{help or 'add `template: TYPE`'}; `smachac states` lists the types"
     edits: tuple[Edit, ...] = ()
-    sure = guesser_of((*FIELDS_OF_STATES, "script")).sure
+    sure = guesser_of((*FIELDS_OF_STATES, "script")).unique_match
     for key, entry in entries.items():
         near = sure(key) if key not in schema.VARIABLES else None
         meant = "template" if key in TEMPLATE_WORDS else near

@@ -111,7 +111,7 @@ def wrong(tree: Tree, shape: str, report: Report, help: str | None = None) -> No
 
 def _mapping_help(tree: Seq, value: str) -> str | None:
     """The help for a list in place of a mapping: the mapping of its mappings, or of its names."""
-    entries = _entries_meant(tree)
+    entries = _recovered_entries(tree)
     pairs: list[str] = []
     for entry in entries:
         text = value if is_known_wrong(entry.value) else entry.value.span.text
@@ -135,7 +135,7 @@ _MOST_SHOWN = 6
 """The most entries that a help shows."""
 
 
-def _entries_meant(tree: Seq) -> tuple[Entry, ...]:
+def _recovered_entries(tree: Seq) -> tuple[Entry, ...]:
     """The entries of a list in place of a mapping: those of its mappings, except of remappings in
     the form of ROS, and its names, whose values are `known_wrong`."""
     entries: list[Entry] = []
@@ -356,7 +356,7 @@ def as_map(tree: Tree, report: Report, value: str = "...") -> tuple[Entry, ...]:
             shown = ", ".join(f"{arrow.key.span.text}: {arrow.value.span.text}" for arrow in arrows)
             help = f"write a mapping: `{{{shown}}}`"
         wrong(tree, "map", report, help)
-        return _entries_meant(tree) if isinstance(tree, Seq) else arrows
+        return _recovered_entries(tree) if isinstance(tree, Seq) else arrows
     return tuple([entry for entry in tree.entries if _names(entry.key, report)])
 
 

@@ -14,9 +14,9 @@ from typing import NamedTuple
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Piece, Source, Span
 from smachac.frontend.text.yaml_tree import (
-    Doubts,
     Entry,
     Map,
+    ParseAnomalies,
     Scalar,
     Seq,
     fits_limits,
@@ -66,11 +66,11 @@ def parse_in_pieces(
     pieces = [*_moved(source, [0, *cuts], before)]
     source.pieces[:] = [piece.piece for piece in pieces]
     report: Report = []
-    doubts = Doubts([], [], [])
+    anomalies = ParseAnomalies([], [], [])
     for number, (text, piece, tree) in enumerate(pieces):
         if tree is None:
-            pieces[number] = PieceTree(text, piece, _tree(source, piece, text, report, doubts))
-    tree = None if report or any(doubts) else _whole(source, pieces)
+            pieces[number] = PieceTree(text, piece, _tree(source, piece, text, report, anomalies))
+    tree = None if report or any(anomalies) else _whole(source, pieces)
     if tree is None:
         source.pieces[:] = [Piece(source, 0)]
         return None
@@ -92,9 +92,11 @@ def _moved(source: Source, cuts: list[int], before: tuple[PieceTree, ...]) -> It
             yield PieceTree(text, Piece(source, begin), None)
 
 
-def _tree(source: Source, piece: Piece, text: str, report: Report, doubts: Doubts) -> Map | None:
+def _tree(
+    source: Source, piece: Piece, text: str, report: Report, anomalies: ParseAnomalies
+) -> Map | None:
     """The mapping in a piece: the fields of the script, or the item of its list."""
-    tree = parse_piece(source, piece, text, report, doubts)
+    tree = parse_piece(source, piece, text, report, anomalies)
     if isinstance(tree, Seq) and len(tree.items) == 1:
         tree = tree.items[0]
     return tree if isinstance(tree, Map) else None

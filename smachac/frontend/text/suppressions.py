@@ -198,7 +198,7 @@ def apply_suppressions(
 ) -> tuple[Report, set[Suppression]]:
     """Apply suppressions: the findings that are left, and the suppressions that were used.
 
-    A firm finding cannot be suppressed; a suppression of one is reported (SM022).
+    An unsuppressible finding cannot be suppressed; a suppression of one is reported (SM022).
     """
     if not given:
         return report, set()

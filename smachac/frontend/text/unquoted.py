@@ -15,7 +15,7 @@ from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Span
 from smachac.frontend.errors.script import wrong_shape
 from smachac.frontend.text.yaml_tree import Scalar, Tree
-from smachac.ir.code_places import python_tree
+from smachac.ir.script_code import script_code
 
 _NAME = r"[A-Za-z_][A-Za-z0-9_]*"
 _QUALIFIED = rf"(?:::)?{_NAME}(?:::{_NAME})*"
@@ -45,12 +45,12 @@ def is_function(text: str) -> bool:
     text = text.strip()
     if len(text) > 2 and text[0] == text[-1] == "`":
         text = text[1:-1].strip()
-    return is_dotted(text) or isinstance(python_tree(text), ast.Lambda | ast.Call)
+    return is_dotted(text) or isinstance(script_code(text).tree, ast.Lambda | ast.Call)
 
 
 def is_expression(text: str) -> bool:
     """Whether a text is an expression of Python on one line."""
-    return "\n" not in text and "#" not in text and python_tree(text.strip()) is not None
+    return "\n" not in text and "#" not in text and script_code(text.strip()).tree is not None
 
 
 def is_header(text: str) -> bool:
@@ -111,7 +111,7 @@ def check_unquoted(tree: Tree, shape: str, report: Report) -> None:
 
 def _reads_userdata(text: str) -> bool:
     """Whether a text is an expression with a usual name of userdata, such as `ud.n > 0`."""
-    tree = python_tree(text.strip().strip("`"))
+    tree = script_code(text.strip().strip("`")).tree
     names = (node.id for node in ast.walk(tree) if isinstance(node, ast.Name)) if tree else ()
     return any(name in ("ud", "userdata") for name in names)
 

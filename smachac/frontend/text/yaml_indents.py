@@ -22,7 +22,7 @@ from smachac.frontend.text.yaml_outline import (
     strays_of,
     unusual_steps,
 )
-from smachac.frontend.text.yaml_tree import Mended
+from smachac.frontend.text.yaml_tree import OffsetMap
 
 _ABOVE, _BELOW, _HEADS, _COLUMNS, _PARTS = 150, 100, 16, 8, 6
 """Limits of the rows above and below a fault that are read, of those that are moved for trial, of
@@ -175,7 +175,7 @@ def _columns(rows: Sequence[Row], head: int) -> list[int]:
     return [column for column in found if column != row.column]
 
 
-def moved_text(text: str, move: Move, before: Mended) -> tuple[str, Mended]:
+def moved_text(text: str, move: Move, before: OffsetMap) -> tuple[str, OffsetMap]:
     """The text in which the lines of a move are moved, and the changes with those before."""
     changes: list[tuple[int, int, int]] = []
     shift = 0
@@ -183,7 +183,7 @@ def moved_text(text: str, move: Move, before: Mended) -> tuple[str, Mended]:
         text = text[: at + shift] + " " * added + text[at + shift + taken :]
         changes.append((at + shift, taken, added))
         shift += added - taken
-    return text, Mended(text, (*before.changes, *changes))
+    return text, OffsetMap(text, (*before.changes, *changes))
 
 
 def _shifts(text: str, move: Move) -> Iterator[tuple[int, int, int]]:
@@ -198,7 +198,7 @@ def _shifts(text: str, move: Move) -> Iterator[tuple[int, int, int]]:
 
 
 def move_finding(
-    source: Source, text: str, before: Mended, move: Move, *, stops: bool
+    source: Source, text: str, before: OffsetMap, move: Move, *, stops: bool
 ) -> Diagnostic:
     """SM001 for a row at a wrong column of a text. `stops`: it is no YAML because of it."""
     row, like = move.rows[move.first], move.like

@@ -126,7 +126,7 @@ def is_known_wrong(tree: Tree) -> bool:
     return isinstance(tree, Scalar) and tree.value == "" and tree.plain
 
 
-class Doubts(NamedTuple):
+class ParseAnomalies(NamedTuple):
     """The places of a text where something is probably missing or wrong, as indexes: `stops` are
     those that a syntax error names, at `places` the text is YAML with an unusual meaning because of
     a sign, at `steps` because of an indentation."""
@@ -136,7 +136,7 @@ class Doubts(NamedTuple):
     steps: list[int]
 
 
-class Mended(NamedTuple):
+class OffsetMap(NamedTuple):
     """A repaired text. `changes`: the index, the number of characters that are removed there, and
     of those written, each in the text with the changes before it."""
 
@@ -154,29 +154,32 @@ class Mended(NamedTuple):
 
 
 def parse(
-    source: Source, report: Report, doubts: Doubts | None = None, mended: Mended | None = None
+    source: Source,
+    report: Report,
+    anomalies: ParseAnomalies | None = None,
+    offsets: OffsetMap | None = None,
 ) -> Tree | None:
     """The tree of a source; None if the text is empty or not YAML.
 
     Reported are syntax errors (SM001), duplicate keys (SM002), keys that are no scalars (SM004) and
-    limits that are exceeded (SM006). With `mended`, the tree is that of the repaired text, with
+    limits that are exceeded (SM006). With `offsets`, the tree is that of the repaired text, with
     places in the source.
     """
     if not fits_limits(source, report):
         return None
     builder = _Builder(source, source.pieces[0], report)
-    if mended is None:
-        return _build(builder, events(source.text), doubts)
-    return _build(builder, _moved_back(events(mended.text), mended), doubts)
+    if offsets is None:
+        return _build(builder, events(source.text), anomalies)
+    return _build(builder, _moved_back(events(offsets.text), offsets), anomalies)
 
 
 def parse_piece(
-    source: Source, piece: Piece, text: str, report: Report, doubts: Doubts
+    source: Source, piece: Piece, text: str, report: Report, anomalies: ParseAnomalies
 ) -> Tree | None:
     """The tree of a piece of a source, which has this text, with places in the piece."""
     builder = _Builder(source, piece, report)
     builder.most_levels -= 1  # the mapping around the list of states
-    return _build(builder, events(text), doubts)
+    return _build(builder, events(text), anomalies)
 
 
 def fits_limits(source: Source, report: Report) -> bool:
@@ -271,15 +274,17 @@ class _Mark:
     index: int
 
 
-def _moved_back(events: Iterator[Any], mended: Mended) -> Iterator[Any]:
+def _moved_back(events: Iterator[Any], offsets: OffsetMap) -> Iterator[Any]:
     """The events of a repaired text with the places of the text before."""
     for event in events:
-        event.start_mark = _Mark(mended.back(event.start_mark.index))
-        event.end_mark = _Mark(mended.back(event.end_mark.index))
+        event.start_mark = _Mark(offsets.back(event.start_mark.index))
+        event.end_mark = _Mark(offsets.back(event.end_mark.index))
         yield event
 
 
-def _build(builder: _Builder, found: Iterable[Any], doubts: Doubts | None) -> Tree | None:
+def _build(
+    builder: _Builder, found: Iterable[Any], anomalies: ParseAnomalies | None
+) -> Tree | None:
     """The tree of the events of a text."""
     from yaml import MarkedYAMLError
 
@@ -295,16 +300,16 @@ def _build(builder: _Builder, found: Iterable[Any], doubts: Doubts | None) -> Tr
             report.append(_too_deep(source, deep))
         else:
             report.append(syntax_error(source, error))
-            if doubts is not None:
-                doubts.stops.extend(stopped_at(source.text, error))
+            if anomalies is not None:
+                anomalies.stops.extend(stopped_at(source.text, error))
     except _BeyondLimitError:
         builder.items = []
     finally:
         if collecting:
             gc.enable()
-    if doubts is not None:
-        doubts.places.extend(builder.doubtful)
-        doubts.steps.extend(builder.misplaced)
+    if anomalies is not None:
+        anomalies.places.extend(builder.anomalous)
+        anomalies.steps.extend(builder.misplaced)
     return next(iter(builder.items), None)
 
 
@@ -384,7 +389,7 @@ class _Builder:
         self.stack: list[_Open] = []
         self.items: list[Tree] = []
         self.anchors: dict[str, tuple[Tree, int]] = {}
-        self.doubtful: list[int] = []
+        self.anomalous: list[int] = []
         self.misplaced: list[int] = []
         self.aliased = 0
         self.most = min(MAX_NODES, MAX_SMALL_NODES + len(source.text) // CHARACTERS_OF_A_NODE)
@@ -413,7 +418,7 @@ class _Builder:
                 elif plain and (not text.isidentifier() or text in WORDS):  # most are names
                     value = value_of(text)
                     if " " in text or text[-1:] in _LAST_SIGNS:
-                        self._doubt(text, start)
+                        self._note_anomaly(text, start)
                 if start == end and plain:  # positions of nothing differ between parsers
                     start = end = last
                 last = end
@@ -448,7 +453,7 @@ class _Builder:
                     self._too_many(start)
             elif kind is alias:
                 last = event.end_mark.index
-                node, size = self._meant(event)
+                node, size = self._recovered(event)
                 items.append(node)
                 nodes += size
                 if nodes > most:
@@ -466,13 +471,13 @@ class _Builder:
         help = "remove the `---`: a script is one document"
         self.report.append(wrong_shape(span, message, help, arguments=("document",)))
 
-    def _doubt(self, text: str, start: int) -> None:
+    def _note_anomaly(self, text: str, start: int) -> None:
         """Notes a text without quotes that is probably two, or a part of one: `done READY`."""
         if text[-1] in _LAST_SIGNS:
             if _is_torn(text):
-                self.doubtful.append(start)
+                self.anomalous.append(start)
         elif " = " in text or (self._is_flow() and _TWO_WORDS.fullmatch(text) is not None):
-            self.doubtful.append(start)
+            self.anomalous.append(start)
 
     def _check_anchor(self, event: Any) -> None:
         """Reports an anchor of which libyaml reads a part as the value, `&left:home 0.5`."""
@@ -542,7 +547,7 @@ class _Builder:
                 return look_up
         return Map(self._entries(items, flow), span)
 
-    def _meant(self, event: Any) -> tuple[Tree, int]:
+    def _recovered(self, event: Any) -> tuple[Tree, int]:
         """The node with the anchor of an alias, and the number of nodes in it."""
         self._check_anchor(event)
         span = Span(self.source, event.start_mark.index, event.end_mark.index)
@@ -591,10 +596,10 @@ class _Builder:
                     merged.extend(self._merge(value))
                     continue
                 if key.plain and isinstance(text, str) and _NO_KEY.search(text) is not None:
-                    self.doubtful.append(key.start)
+                    self.anomalous.append(key.start)
             if flow and isinstance(value, Scalar) and value.value is None:
                 if entries and value.start == value.end and not _is_empty(entries[-1].value):
-                    self.doubtful.append(key.start)
+                    self.anomalous.append(key.start)
                 key, value = self._separated(key, value)
                 text = key.value
             known = first.setdefault(text if isinstance(text, str) else _identity(key), key)
@@ -605,14 +610,14 @@ class _Builder:
                     self._stop(key.span.start, message, "use each key once", "duplicates")
             entries.append(Entry(key, value))
         if not flow and (len(entries) > 1 or "states" in first):
-            self._doubt_steps(entries, first)
+            self._note_steps(entries, first)
         for entry in merged:
             if _identity(entry.key) not in first:
                 first[_identity(entry.key)] = entry.key
                 entries.append(entry)
         return tuple(entries)
 
-    def _doubt_steps(
+    def _note_steps(
         self, entries: list[Entry], names: dict[str | tuple[type, object], Scalar]
     ) -> None:
         """Notes a mapping on lines of its own that has keys of a state beside its name, or states
@@ -621,13 +626,13 @@ class _Builder:
             if "template" not in names and "name" not in names and "T" not in names:
                 self.misplaced.append(names["states"].start)
             elif "it" in names:
-                self._doubt_iterator(entries)
+                self._note_iterator(entries)
         elif entries[0].value.__class__ is Map:
             start = entries[0].key.start
             if self.source.text[start - 2 : start] == "- ":
                 self.misplaced.append(entries[1].key.start)
 
-    def _doubt_iterator(self, entries: list[Entry]) -> None:
+    def _note_iterator(self, entries: list[Entry]) -> None:
         """Notes the second state of an Iterator, which has one."""
         states = next(entry.value for entry in entries if entry.key.value == "states")
         if isinstance(states, Seq) and len(states.items) > 1:

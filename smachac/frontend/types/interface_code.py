@@ -35,7 +35,7 @@ def code_by_language(section: Section, report: Report) -> dict[str, str]:
     for language, value in declared_in(section):
         if isinstance(value, Scalar):
             found[language] = str(value.value)
-            help = _class_meant(found[language]) if language == "python" else None
+            help = _suggested_class(found[language]) if language == "python" else None
             if help is not None:
                 message = f"`{value.value}` is not the name of a class in a Python module"
                 arguments = ("class", str(value.value))
@@ -43,7 +43,7 @@ def code_by_language(section: Section, report: Report) -> dict[str, str]:
     return found
 
 
-def _class_meant(text: str) -> str | None:
+def _suggested_class(text: str) -> str | None:
     """The help for a text that is neither `module:Class` nor the name of a template; None for one
     of these."""
     names = text.replace(":", ".", 1).split(".")

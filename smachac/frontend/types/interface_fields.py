@@ -40,7 +40,7 @@ def interface_fields(tree: Map, report: Report) -> dict[str, Tree]:
     proposed = [name for name in SECTIONS if name in missing]
     fields: dict[str, Tree] = {}
     meant: dict[str, Tree] = {}
-    sure = guesser_of(tuple(INTERFACE_FIELDS)).sure
+    sure = guesser_of(tuple(INTERFACE_FIELDS)).unique_match
     owner = Owner("interface", "an interface", "field")
     for entry in as_map(tree, report):
         key = str(entry.key.value)

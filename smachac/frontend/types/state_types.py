@@ -559,7 +559,7 @@ def _check_declared(
     effect = f"only names in `{part}` have a meaning here, so no program is generated"
     arguments = (part, word.text)
     report.append(wrong_shape(word.span, message, help, arguments=arguments, effect=effect))
-    return guesser_of(tuple(names)).sure(word.text)
+    return guesser_of(tuple(names)).unique_match(word.text)
 
 
 def _unwritten(sections: Mapping[str, Section], part: str) -> str | None:

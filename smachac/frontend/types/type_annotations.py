@@ -45,7 +45,7 @@ def explain_aliases(aliases: Aliases, outer: Aliases, source: Source, report: Re
             report[index] = replace(item, finding=replace(finding, help=help))
             continue
         known = aliases if finding.span.source is source else outer
-        near = guesser_of(tuple(known)).sure(unknown) if unknown else None
+        near = guesser_of(tuple(known)).unique_match(unknown) if unknown else None
         if near:
             edits = respelt(Word(unknown, finding.span), near)
             help = f"did you mean `{near}`?"
@@ -202,7 +202,9 @@ def _respelt(tree: Map, aliases: Aliases, report: Report) -> Map:
     wrong = []
     for entry in tree.entries:
         name = str(entry.key.value)
-        field = name if name in PRESET_FIELDS else guess.sure(name) or _OTHER_FIELDS.get(name)
+        field = (
+            name if name in PRESET_FIELDS else guess.unique_match(name) or _OTHER_FIELDS.get(name)
+        )
         if field is None or field in meant:
             return tree
         if field != name:

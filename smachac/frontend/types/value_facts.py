@@ -222,7 +222,7 @@ def check_language(word: Word, report: Report) -> None:
     if word.text in LANGUAGES:
         return
     names = {other: name for name, others in LANGUAGES.items() for other in (name, *others)}
-    meant = names.get(word.text.casefold()) or Guesser(LANGUAGES).sure(word.text)
+    meant = names.get(word.text.casefold()) or Guesser(LANGUAGES).unique_match(word.text)
     owner = Owner("code", "the code of a state type", "language")
     severity = None if meant else Severity.WARNING
     known = [meant] if meant else [*LANGUAGES]

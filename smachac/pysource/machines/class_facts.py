@@ -1,4 +1,6 @@
-"""The facts about state classes of a repository: what `execute` returns, reads and writes."""
+"""The facts about the state classes of machines in Python files: what `execute` returns, reads and
+writes. A class is found by its name in the modules of the repository, and read as that of a state
+type is (class_reader.py)."""
 
 from __future__ import annotations
 

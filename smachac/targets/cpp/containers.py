@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from itertools import islice
+from typing import NamedTuple
 
 from smachac.diagnostics.source import assert_never
 from smachac.ir.nodes import (
@@ -18,6 +19,7 @@ from smachac.ir.nodes import (
     Container,
     Expression,
     Iterator,
+    Key,
     Leaf,
     Node,
     OutcomeRule,
@@ -194,6 +196,38 @@ def indented(lines: Lines) -> Lines:
     return [f"  {line}" if line else "" for line in lines]
 
 
+class CopiedKey(NamedTuple):
+    """A key that is copied into a container before its call, or out of it after the call: its name
+    inside and outside, and its C++ object in the userdata of the container and around it."""
+
+    name: str
+    outer: str
+    inside: str
+    around: str
+
+
+def copied_keys(
+    scope: ContainerScope, inner: ContainerScope, child: Container, keys: Iterable[Key]
+) -> list[CopiedKey]:
+    """Those of the input or output keys of a container that it does not share with `scope`, which
+    is around it."""
+    own, names = scope.userdata_of(child), scope.names(child)
+    found: list[CopiedKey] = []
+    for key in keys:
+        if key.name not in inner.shared:
+            inside, outer = f"{own}.{identifier(key.name)}", names[key.name]
+            found.append(CopiedKey(key.name, outer, inside, scope.object(outer)))
+    return found
+
+
+def userdata_argument(scope: ContainerScope, inner: ContainerScope, child: Container) -> str:
+    """The userdata in the call of a container: its own, and the keys that it shares."""
+    own, names = scope.userdata_of(child), scope.names(child)
+    if not inner.shared:
+        return own
+    return f"{{{', '.join([own, *(scope.object(names[key]) for key in inner.view)])}}}"
+
+
 def _call(plan: ContainerPlan, child: Node) -> ChildCall:
     """The call of a child. The keys of a container are copied in before and out after its call."""
     if isinstance(child, Leaf):
@@ -201,24 +235,16 @@ def _call(plan: ContainerPlan, child: Node) -> ChildCall:
         return ChildCall(
             statements=[], outcome=leaf.call, declares=False, uses_userdata=leaf.uses_userdata
         )
-    own = plan.scope.userdata_of(child)
-    inner = plan.scopes[f"{plan.scope.path}/{child.name}"]
-    names = plan.scope.names(child)
-    before, after = [], []
-    for key in child.inputs:
-        if key.name not in inner.shared:
-            outer = names[key.name]
-            target = f"{own}.{identifier(key.name)}"
-            before.append(_copy(target, plan.scope.object(outer), outer in plan.scope.sure))
-    for key in child.outputs:
-        if key.name not in inner.shared:
-            outer = names[key.name]
-            held, source = outer in plan.scope.sure, f"{own}.{identifier(key.name)}"
-            after.append(_copy(plan.scope.object(outer), source, key.name in inner.sure, held=held))
-    userdata = own
-    if inner.shared:
-        outers = (plan.scope.object(names[key]) for key in inner.view)
-        userdata = f"{{{', '.join([own, *outers])}}}"
+    scope, inner = plan.scope, plan.scopes[f"{plan.scope.path}/{child.name}"]
+    before = [
+        _copy(key.inside, key.around, key.outer in scope.sure)
+        for key in copied_keys(scope, inner, child, child.inputs)
+    ]
+    after = [
+        _copy(key.around, key.inside, key.name in inner.sure, held=key.outer in scope.sure)
+        for key in copied_keys(scope, inner, child, child.outputs)
+    ]
+    userdata = userdata_argument(scope, inner, child)
     call = f"{identifier(child.name)}::execute(states.{member(child)}, {userdata}, run)"
     found = ChildCall(statements=before, outcome=call, declares=False, uses_userdata=True)
     if not after:

@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
-from pathlib import PurePath
 
 from smachac.analysis.type_inference import infer
 from smachac.diagnostics.diagnostic import Report
@@ -361,7 +360,7 @@ def place(node: Node) -> str:
     """The place of a state in the script, file name and line; empty if it has none."""
     if node.span.source is NOWHERE.source:
         return ""
-    return comment(f"{PurePath(node.span.source.name).name}:{node.span.line}")
+    return comment(f"{node.span.source.file_name}:{node.span.line}")
 
 
 def scope_name(path: str) -> str:

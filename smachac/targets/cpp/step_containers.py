@@ -31,9 +31,11 @@ from smachac.targets.cpp.containers import (
     ContainerPlan,
     Lines,
     concurrence_rules,
+    copied_keys,
     indented,
     is_small,
     results,
+    userdata_argument,
 )
 from smachac.targets.cpp.expressions import Spelling, cpp_bounded, cpp_function, lowered
 from smachac.targets.cpp.identifiers import identifier
@@ -178,21 +180,15 @@ def _turn(plan: StepPlan, child: Node) -> Lines:
         return _leaf_turn(plan, child, number)
     scope = plan.container.scope
     inner = plan.container.scopes[f"{scope.path}/{child.name}"]
-    own, names = scope.userdata_of(child), scope.names(child)
-    before, after = [], []
-    for key in child.inputs:
-        if key.name not in inner.shared:
-            outer = names[key.name]
-            target = f"{own}.{identifier(key.name)}"
-            before.append(_copy(target, key.name, scope.object(outer), outer in scope.sure))
-    for key in child.outputs:
-        if key.name not in inner.shared:
-            outer, source = names[key.name], f"{own}.{identifier(key.name)}"
-            after.append(_copy(scope.object(outer), outer, source, key.name in inner.sure))
-    userdata = own
-    if inner.shared:
-        outers = (scope.object(names[key]) for key in inner.view)
-        userdata = f"{{{', '.join([own, *outers])}}}"
+    before = [
+        _copy(key.inside, key.name, key.around, key.outer in scope.sure)
+        for key in copied_keys(scope, inner, child, child.inputs)
+    ]
+    after = [
+        _copy(key.around, key.outer, key.inside, key.name in inner.sure)
+        for key in copied_keys(scope, inner, child, child.outputs)
+    ]
+    userdata = userdata_argument(scope, inner, child)
     states = f"states.{member(child)}"
     call = f"{identifier(child.name)}::step_({states}, {userdata}, run)"
     may_fail = any(

@@ -6,19 +6,18 @@ from smachac.diagnostics.diagnostic import Report
 from smachac.ir.nodes import Checked
 from smachac.targets import (
     DEPTH,
+    DIRECTION,
     GENERATED,
     BuildContext,
     Files,
-    OptionError,
     Target,
+    direction_of,
     levels_open,
     made_by,
     stem,
     view_of,
 )
 from smachac.targets.dot.graph import picture
-
-DIRECTIONS = ("TB", "LR", "BT", "RL")
 
 
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
@@ -28,9 +27,7 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """
     view = view_of(machine, context.options)
     depth = levels_open(context.options, view)
-    rankdir = context.options.get("rankdir", "TB")
-    if rankdir not in DIRECTIONS:
-        raise OptionError(f"`rankdir` must be one of {', '.join(DIRECTIONS)}, not `{rankdir}`")
+    rankdir = direction_of(context.options, "rankdir")
     lines = picture(machine, view, depth=depth, rankdir=rankdir)
     return {f"{stem(machine)}.dot": "\n".join([f"// {made_by(machine)}", *lines, ""])}
 
@@ -43,6 +40,6 @@ TARGET = Target(
     options={
         "depth": DEPTH,
         "generated": GENERATED,
-        "rankdir": "where the picture runs to: TB (down, the default), LR, BT or RL",
+        "rankdir": DIRECTION,
     },
 )

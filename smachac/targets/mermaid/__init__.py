@@ -6,19 +6,18 @@ from smachac.diagnostics.diagnostic import Report
 from smachac.ir.nodes import Checked
 from smachac.targets import (
     DEPTH,
+    DIRECTION,
     GENERATED,
     BuildContext,
     Files,
-    OptionError,
     Target,
+    direction_of,
     levels_open,
     made_by,
     stem,
     view_of,
 )
 from smachac.targets.mermaid.diagram import diagram
-
-DIRECTIONS = ("TB", "LR", "BT", "RL")
 
 
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
@@ -28,9 +27,7 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """
     view = view_of(machine, context.options)
     depth = levels_open(context.options, view)
-    direction = context.options.get("direction", "TB")
-    if direction not in DIRECTIONS:
-        raise OptionError(f"`direction` must be one of {', '.join(DIRECTIONS)}, not `{direction}`")
+    direction = direction_of(context.options, "direction")
     lines = diagram(machine, view, depth=depth, direction=direction)
     return {f"{stem(machine)}.mmd": "\n".join([f"%% {made_by(machine)}", *lines, ""])}
 
@@ -43,6 +40,6 @@ TARGET = Target(
     options={
         "depth": DEPTH,
         "generated": GENERATED,
-        "direction": "where the picture runs to: TB (down, the default), LR, BT or RL",
+        "direction": DIRECTION,
     },
 )

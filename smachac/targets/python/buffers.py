@@ -171,7 +171,7 @@ class ModuleParts:
         here = {name for name, span in spans.items() if span is not None and span.source == own}
         guess = guesser(name for name in known if name not in here)
         for name in sorted(page.own.difference(known)):
-            near = guess.sure(name)
+            near = guess.unique_match(name)
             span = spans[name]
             if near is not None and span is not None:
                 place = Span(span.source, span.end - len(name), span.end)

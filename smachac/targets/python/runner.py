@@ -19,7 +19,7 @@ from smachac.ir.nodes import Machine
 from smachac.ir.script_paths import script_paths
 from smachac.ir.secret_keys import secret_keys
 from smachac.ir.traversal import walk
-from smachac.records import dataclass
+from smachac.records import dataclass, field
 from smachac.robots.faults import Fault
 from smachac.runtime import signals
 from smachac.runtime.signals import StopSignals
@@ -47,55 +47,64 @@ class RunResult:
 def places(machine: Machine) -> dict[str, str]:
     """The place of each state in the script (`pick_block.yml:12`), by the path of the state."""
     return {
-        path: f"{Path(node.span.source.name).name}:{node.span.line}"
-        for path, node in walk(machine.root)
+        path: f"{node.span.source.file_name}:{node.span.line}" for path, node in walk(machine.root)
     }
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PythonProgram:
+    """A generated program: the file name and text of its module, and the machine that it runs.
+
+    `folders` are those from which it may import modules of the user (`module_folders` of
+    frontend/files.py), and where it finds descriptions of robots and scenes.
+    """
+
+    name: str
+    text: str
+    machine: Machine
+    folders: Sequence[Path]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Simulation:
+    """The settings of the simulated worlds that a program opens: see `sim.configure`."""
+
+    gui: bool = False
+    record: Path | None = None
+    faults: Sequence[Fault] = ()
+    poses: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+
+
+DEFAULTS = Simulation()
+
+
 def execute(
-    name: str,
-    text: str,
-    machine: Machine,
+    program: PythonProgram,
     observe: Observer | Sink | None,
     *,
-    folders: Sequence[Path],
     seed: int = 0,
-    gui: bool = False,
-    record: Path | None = None,
-    faults: Sequence[Fault] = (),
-    poses: Mapping[str, Mapping[str, float]] | None = None,
+    simulation: Simulation = DEFAULTS,
     on_preempt: Callable[[], None] = lambda: None,
-    on_second_signal: Callable[[int], Any] = signals.end_now,
     arguments: Sequence[str] | None = None,
     gate: Gate | None = None,
 ) -> RunResult:
-    """Run the module `text`; the result has no events, which `observe` receives.
+    """Run a program; the result has no events, which `observe` receives.
 
-    `folders` are those from which the program may import modules of the user (`module_folders` of
-    frontend/files.py), and where it finds descriptions of robots and scenes. `observe` gets every
-    event of the trace, with paths of the script; `faults` are injected into the simulation, and are
-    events of the trace; `poses` replace those of bodies in its scene (`sim.configure`). `gate` lets
-    a debugger stop the machine between two states. The first stop signal requests the machine to
-    preempt and calls `on_preempt`; a second one calls `on_second_signal` with its number; both in
-    another thread. `arguments` are those of a node of ROS 2, which handles the signals itself.
-    Exceptions of the program are not caught.
+    `observe` gets every event of the trace, with paths of the script; the faults of the simulation
+    are events of the trace. `seed` is that of the simulated worlds and of `random`. `gate` lets a
+    debugger stop the machine between two states. The first stop signal requests the machine to
+    preempt and calls `on_preempt`, in another thread; a second one ends the process. `arguments`
+    are those of a node of ROS 2, which handles the signals itself. Exceptions of the program are
+    not caught.
     """
     from smachac.runtime.tracing import trace
 
     random.seed(seed)
     given = [["smachac", *arguments]] if arguments is not None else []
-    with loaded(name, text, *folders) as module:
+    machine = program.machine
+    with loaded(program.name, program.text, *program.folders) as module:
         built: list[Any] = []
         emits: list[Callable[..., None]] = []
-        settings = {
-            "seed": seed,
-            "gui": gui,
-            "record": record,
-            "faults": faults,
-            "on_event": partial(_record_fault, machine, emits),
-            "folders": folders,
-            "poses": poses,
-        }
 
         def watch(root: Any) -> None:
             if observe is not None:
@@ -116,10 +125,15 @@ def execute(
             built.append(root)
 
         with (
-            _simulation(settings),
+            _configured(
+                simulation,
+                seed=seed,
+                folders=program.folders,
+                on_event=partial(_record_fault, machine, emits),
+            ),
             watching(module, watch) as outcomes,
             quiet(module["smach"], _print_log),
-            _stopping(built, on_preempt, on_second_signal),
+            _stopping(built, on_preempt),
         ):
             outcome: str | None = main_function(module, machine)(*given)
         return RunResult(
@@ -136,15 +150,22 @@ def _clock() -> Callable[[], float]:
 
 
 @contextmanager
-def _simulation(settings: Mapping[str, Any]) -> Iterator[None]:
-    """The settings of the simulated worlds that a program opens, if it imports the simulation."""
-    wanted = settings["record"] is not None or settings["gui"]
+def _configured(simulation: Simulation, **more: Any) -> Iterator[None]:
+    """The settings of simulated worlds, and `more` of them, are in force, if the program imports
+    the simulation."""
+    wanted = simulation.record is not None or simulation.gui
     if not wanted and "smachac.sim" not in sys.modules:
         yield
         return
     from smachac import sim
 
-    sim.configure(**settings)
+    sim.configure(
+        gui=simulation.gui,
+        record=simulation.record,
+        faults=simulation.faults,
+        poses=simulation.poses,
+        **more,
+    )
     try:
         yield
     finally:
@@ -323,17 +344,15 @@ def main_function(module: Mapping[str, Any], machine: Machine) -> Callable[..., 
     raise NameError(f"the base of the program defines no function `{name}`")
 
 
-def _stopping(
-    built: Sequence[Any], on_preempt: Callable[[], None], on_second: Callable[[int], Any]
-) -> StopSignals:
-    """The first stop signal is a stop request; the second one calls `on_second`. Without a machine
+def _stopping(built: Sequence[Any], on_preempt: Callable[[], None]) -> StopSignals:
+    """The first stop signal is a stop request; the second one ends the process. Without a machine
     the first one does."""
 
     def request() -> None:
         if not built:
-            on_second(signals.received[0])
+            signals.end_now(signals.received[0])
             return
         on_preempt()
         built[-1].request_preempt()
 
-    return StopSignals(request, on_second)
+    return StopSignals(request, signals.end_now)

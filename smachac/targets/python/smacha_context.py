@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any
 
-from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import Concurrence, Container, Data, Expression, Leaf, Node, Struct, Variable
+from smachac.ir.script_code import script_code
 from smachac.ir.traversal import own_outcomes, remapping
 from smachac.pysource.ros_names import Ros
 from smachac.targets.python import structure
@@ -219,7 +219,7 @@ def written(variables: Iterable[Variable]) -> dict[str, object]:
 
 
 def _function(value: object) -> object:
-    is_lambda = isinstance(value, ScriptText) and isinstance(python_tree(value), ast.Lambda)
+    is_lambda = isinstance(value, ScriptText) and isinstance(script_code(value).tree, ast.Lambda)
     return CodeText(value) if is_lambda else value
 
 

@@ -485,7 +485,7 @@ def _unprinted_variable(found: Diagnostic, leaf: Leaf, type_: StateType) -> Diag
         case ("undefined", name):
             used, own = type_.used, [variable.name for variable in leaf.variables]
             idle = [text for text in own if used is not None and text not in used]
-            if len(idle) == 1 and guesser(own).sure(name) is None:
+            if len(idle) == 1 and guesser(own).unique_match(name) is None:
                 help = f"did you mean `{idle[0]}`? `{leaf.name}` sets it, and the template does not"
                 help += " use it"
                 return replace(found, finding=replace(found.finding, help=help))

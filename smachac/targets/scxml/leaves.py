@@ -253,14 +253,14 @@ def _seconds(seconds: float) -> str:
 
 def _invoked(leaf: _Leaf) -> Element:
     node, id, data = leaf.node, leaf.id, leaf.scope.data
-    is_open = leaf.in_iterator or node.open
+    has_no_interface = leaf.in_iterator or node.open
     names = dict(remapping(node)) if node.open and not leaf.in_iterator else {}
     inputs = {key.name: leaf.outer(key.name) for key in node.inputs} | names
     outputs = {key.name: leaf.outer(key.name) for key in node.outputs} | names
-    more = ", true" if is_open else ""
+    more = ", true" if has_no_interface else ""
     shown = [js_string(outcome) for outcome in leaf.outcomes]
     params = {"outcomes": f"[{', '.join(shown)}]"}
-    if inputs or is_open:
+    if inputs or has_no_interface:
         params["inputs"] = f"view({data}, {names_object(inputs)}{more})"
     variables = _variables(leaf)
     if variables:

@@ -8,7 +8,6 @@ compound state with an index. Requests to stop are in the data of the document (
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from pathlib import PurePath
 
 from smachac.diagnostics.source import NOWHERE, assert_never
 from smachac.ir import nodes
@@ -60,7 +59,7 @@ def place(node: Node) -> Content:
     """The comments above a state: its place in the script, and its documentation."""
     found: Content = []
     if node.span.source is not NOWHERE.source:
-        found.append(Comment(f"{PurePath(node.span.source.name).name}:{node.span.line}"))
+        found.append(Comment(f"{node.span.source.file_name}:{node.span.line}"))
     return found + [Comment(line) for line in comment_lines(node.doc, COMMENT_WIDTH)]
 
 

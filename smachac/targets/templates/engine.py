@@ -335,7 +335,7 @@ class _ErrorConverter:
         name = getattr(error, "undefined_name", None)
         names = (message,) if name is None else ("undefined", name)
         if name is not None:
-            near = guesser(sorted(self.names() if self.names else ())).sure(name)
+            near = guesser(sorted(self.names() if self.names else ())).unique_match(name)
             help = f"did you mean `{near}`?" if near is not None else help
             span = _marked(span, rf"\b{re.escape(name)}\b")
         opening = _unclosed_tag(error, span.source)

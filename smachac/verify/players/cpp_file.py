@@ -63,7 +63,7 @@ def file_player(
         if header.faults:
             raise unplayable(source, header.faults)
         compiler = first_compiler()
-        lines = {path: f"{Path(source.name).name}:{n}" for path, n in header.lines.items()}
+        lines = {path: f"{source.file_name}:{n}" for path, n in header.lines.items()}
         full = {shown: path for path, shown in planned.paths.items()}
         with tempfile.TemporaryDirectory() as folder:
             header.write_stand_ins(Path(folder))

@@ -72,7 +72,7 @@ def file_player(source: Source, machine: Machine, *, folders: Sequence[Path]) ->
             faults = list(_differences(found, machine, lines))
             if faults:
                 raise unplayable(source, faults)
-            stem = Path(source.name).name
+            stem = source.file_name
             sources = {path: f"{stem}:{line}" for path, line in lines.items() if line}
             for number, case in enumerate(cases):
                 yield trace_of(built(build) if number else root, machine.root.name, case, sources)

@@ -66,7 +66,7 @@ def goal_state(order: int, **arguments: Any) -> Any:
 
 def finish() -> None:
     program.stop_node(node)
-    left = [each.name for each in threading.enumerate() if each is not threading.main_thread()]
+    left = [item.name for item in threading.enumerate() if item is not threading.main_thread()]
     print("threads left:", left)
 
 

@@ -25,7 +25,7 @@ def keep(data: bytes) -> None:
         start.publish(String(data="go"))
     received.append(data)
     print("message", data.hex(), flush=True)
-    missing.difference_update([each for each in missing if each.encode() in data])
+    missing.difference_update([item for item in missing if item.encode() in data])
     if not missing:
         print("all are there", flush=True)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from smachac.analysis.kept_facts import Found, Preorder, found_at
+from smachac.analysis.incremental_facts import IncrementalResult, Preorder, found_at
 from smachac.ir.nodes import Leaf, Node, StateMachine
 from smachac.ir.traversal import walk
 from tests.support.ir_machines import leaf, machine
@@ -16,7 +16,7 @@ def is_container(node: Node) -> bool:
 
 
 def containers(root: StateMachine) -> Preorder:
-    return Preorder([each for each in walk(root) if is_container(each[1])], is_container)
+    return Preorder([node for node in walk(root) if is_container(node[1])], is_container)
 
 
 def tree() -> StateMachine:
@@ -32,9 +32,9 @@ def test_what_has_not_changed_is_taken_from_the_machine_before() -> None:
     def leaves(path: str, node: Node) -> Iterator[str]:
         visited.append(path)
         assert not isinstance(node, Leaf)
-        yield from (f"{path}/{each.name}" for each in node.children if isinstance(each, Leaf))
+        yield from (f"{path}/{child.name}" for child in node.children if isinstance(child, Leaf))
 
-    def found(root: StateMachine, before: Found | None) -> Found:
+    def found(root: StateMachine, before: IncrementalResult | None) -> IncrementalResult:
         visited.clear()
         return found_at(containers(root), leaves, (), before)
 

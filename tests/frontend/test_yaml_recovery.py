@@ -8,15 +8,15 @@ import pytest
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
-from smachac.frontend.text.yaml_mends import parse_mended
+from smachac.frontend.text.yaml_recovery import parse_with_recovery
 from smachac.frontend.text.yaml_tree import Map, parse
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-def mended(text: str) -> tuple[object, Report]:
+def recovered(text: str) -> tuple[object, Report]:
     report: Report = []
-    return parse_mended(Source("x.yml", text), report), report
+    return parse_with_recovery(Source("x.yml", text), report), report
 
 
 @pytest.mark.parametrize(
@@ -53,7 +53,7 @@ def mended(text: str) -> tuple[object, Report]:
 def test_the_sign_is_named_with_the_repaired_text(
     text: str, place: int, message: str, help: str
 ) -> None:
-    tree, report = mended(text)
+    tree, report = recovered(text)
     assert isinstance(tree, Map)
     (item,) = report
     assert (item.code, item.span.start) == ("SM001", place)
@@ -63,7 +63,7 @@ def test_the_sign_is_named_with_the_repaired_text(
 
 def test_the_places_are_those_of_the_text_as_written() -> None:
     text = "t: {done READY, no: b}\nu: x"
-    tree, _ = mended(text)
+    tree, _ = recovered(text)
     assert isinstance(tree, Map)
     inner, last = tree.entries[0].value, tree.entries[1]
     assert isinstance(inner, Map)
@@ -73,19 +73,19 @@ def test_the_places_are_those_of_the_text_as_written() -> None:
 
 
 def test_two_lost_signs_are_two_findings() -> None:
-    tree, report = mended("t: {done READY}\nu: [a\nT: Foo\n")
+    tree, report = recovered("t: {done READY}\nu: [a\nT: Foo\n")
     assert tree is not None
     assert [item.span.line for item in report] == [2, 1]
 
 
 def test_the_rest_is_not_read_if_two_places_are_as_good() -> None:
-    tree, report = mended("a: {b: {c: 1, d: 2}\ne: f\n")
+    tree, report = recovered("a: {b: {c: 1, d: 2}\ne: f\n")
     assert tree is None
     assert [item.finding.help for item in report] == ["write `a: {b: {c: 1, d: 2}}`"]
 
 
 def test_facts_of_one_name_are_not_mixed_with_names() -> None:
-    _, report = mended("outcomes: {done: {}, lost: {failure: true, preempted: {}}\ndoc: x\n")
+    _, report = recovered("outcomes: {done: {}, lost: {failure: true, preempted: {}}\ndoc: x\n")
     (item,) = report
     assert item.finding.message == "a `}` is missing after `true`"
 
@@ -108,21 +108,21 @@ def test_facts_of_one_name_are_not_mixed_with_names() -> None:
 def test_usual_texts_are_left_alone(text: str) -> None:
     before: Report = []
     tree = parse(Source("x.yml", text), before)
-    assert mended(text) == (tree, before)
+    assert recovered(text) == (tree, before)
 
 
 @pytest.mark.parametrize("text", ["name: [", "a:\n  - {\n", "a: [b,"])
 def test_a_text_that_is_still_written_is_not_repaired(text: str) -> None:
-    tree, report = mended(text)
+    tree, report = recovered(text)
     assert tree is None
     assert [item.code for item in report] == ["SM001"]
 
 
-def test_examples_have_no_doubts() -> None:
+def test_examples_have_no_anomalies() -> None:
     for path in sorted(EXAMPLES.rglob("*.yml")):
-        assert mended(path.read_text("utf-8"))[1] == []
+        assert recovered(path.read_text("utf-8"))[1] == []
 
 
 def test_a_list_of_names_has_no_entries() -> None:
-    _, report = mended("input_keys: [degrees limit]\ninput: {degrees: 1, limit: 2}\n")
+    _, report = recovered("input_keys: [degrees limit]\ninput: {degrees: 1, limit: 2}\n")
     assert [item.finding.help for item in report] == ["write `input_keys: [degrees, limit]`"]

@@ -30,7 +30,7 @@ CONVERTING = frozenset(["float", "int", "len", "abs", "round", "sum"])
 """Functions of Python that need a value."""
 
 
-def silent_results(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
+def void_calls(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
     """The functions and methods of the project that end without `return`, although the code of the
     class puts their result into a record or a list, writes it to a key, or calculates with it."""
     done = set[ast.FunctionDef]()

@@ -25,7 +25,7 @@ SERVICE = "service_namespace: light\n      service: {}\n      "
 
 def findings(code: str, type: str, fields: str, inputs: str = "[order]") -> list[Diagnostic]:
     text = GRASP.format(type=type, inputs=inputs, fields=fields)
-    return [each for each in analysed({"main.yml": text}).report if each.code == code]
+    return [item for item in analysed({"main.yml": text}).report if item.code == code]
 
 
 @pytest.mark.parametrize(
@@ -45,8 +45,8 @@ def findings(code: str, type: str, fields: str, inputs: str = "[order]") -> list
 )
 def test_a_key_that_no_goal_has(fields: str, keys: list[str]) -> None:
     found = findings("SM306", "SimpleActionState", ACTION + fields)
-    assert [each.finding.arguments[1] for each in found] == keys
-    assert all("write `goal_slots: [order]`" in (each.help or "") for each in found)
+    assert [item.finding.arguments[1] for item in found] == keys
+    assert all("write `goal_slots: [order]`" in (item.help or "") for item in found)
 
 
 def test_a_key_that_no_request_has() -> None:
@@ -71,7 +71,7 @@ def test_a_key_that_no_request_has() -> None:
 )
 def test_the_class_of_a_service_in_place_of_its_request(type: str, code: str, new: str) -> None:
     found = findings("SM512", "ServiceState", f"{SERVICE.format(type)}request: {code}", "[]")
-    assert [each.help for each in found] == ([f"write `{new}`"] if new else [])
+    assert [item.help for item in found] == ([f"write `{new}`"] if new else [])
 
 
 LISTEN = """
@@ -92,6 +92,6 @@ states:
 @pytest.mark.parametrize(("tag", "help"), [("/odom", "write `odom`"), ("odom", ""), ("a/odom", "")])
 def test_tf2_refuses_frames_with_a_slash(robot: str, tag: str, help: str) -> None:
     report = analysed({"main.yml": LISTEN.format(robot=robot, tag=tag)}).report
-    found = [each.help for each in report if each.code == "SM505"]
+    found = [item.help for item in report if item.code == "SM505"]
     if help or not robot:
         assert found == ([help] if help else [])

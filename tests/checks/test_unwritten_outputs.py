@@ -52,7 +52,7 @@ def reported(code: str, type_: str = "int", writes: str = PROMISE) -> list[Diagn
     interface = INTERFACE.replace("TYPE", type_).replace("WRITES", writes)
     files = {"main.yml": MAIN, "templates/Place.yml": interface}
     report = analysed({**files, "cell.py": CLASS.replace("CODE", body)}).report
-    return [each for each in report if each.code == "SM314"]
+    return [item for item in report if item.code == "SM314"]
 
 
 def test_a_sum_that_is_not_written_back() -> None:
@@ -121,6 +121,6 @@ def test_the_value_of_an_output_that_is_not_set(code: str, help: str) -> None:
     main = main.replace("{count: 0}", "{load: 0.5}")
     files = {"main.yml": main, "templates/Place.yml": OUTPUT}
     report = analysed({**files, "cell.py": text.replace("CODE", body)}).report
-    (item,) = [each for each in report if each.code == "SM314"]
+    (item,) = [one for one in report if one.code == "SM314"]
     assert item.help is not None
     assert item.help.startswith(help)

@@ -30,7 +30,7 @@ Answers: TypeAlias = "list[object]"
 """The answers of a library: texts, each equal to itself alone, and names of files."""
 
 
-class KeptCall(NamedTuple):
+class CachedCall(NamedTuple):
     """The state of a call, or one in no container, and all else that its reading has found.
 
     `own`: the fields of the call. `around`: its surroundings, except `scope`. `texts`: those of the
@@ -45,7 +45,7 @@ class KeptCall(NamedTuple):
     texts: Mapping[tuple[str, str], Source]
     sources: Mapping[Source, None]
     types: Mapping[str, StateType | None]
-    calls: Mapping[Span, KeptCall]
+    calls: Mapping[Span, CachedCall]
     uses: Uses
     states: int
     keys: int
@@ -59,11 +59,11 @@ def same_objects(one: Mapping[str, object], other: Mapping[str, object]) -> bool
 
 
 @dataclass(slots=True)
-class Kept:
+class ResolveCache:
     """The results of the last reading: the calls by the span of the state's name, the state types
     with the answers that they were made from, and the aliases of types."""
 
-    calls: Mapping[Span, KeptCall] = field(default_factory=dict)
+    calls: Mapping[Span, CachedCall] = field(default_factory=dict)
     types: dict[str, tuple[Answers, StateType]] = field(default_factory=dict)
     aliases: Aliases = field(default_factory=dict)
 

@@ -22,17 +22,17 @@ from smachac.frontend.text.fields import PRESET_FIELDS
 from smachac.frontend.text.yaml_errors import CONFLICT, SPACE_MISSING, lost_of_block_text
 from smachac.frontend.text.yaml_indents import best_move, move_finding, moved_text
 from smachac.frontend.text.yaml_tree import (
-    Doubts,
     Entry,
     Map,
-    Mended,
+    OffsetMap,
+    ParseAnomalies,
     Scalar,
     Seq,
     Tree,
     parse,
 )
 
-MOST_MENDS, MOST_CHARACTERS = 5, 50_000
+MOST_CHANGES, MOST_CHARACTERS = 5, 50_000
 """The most repairs of a text, and the longest text that is repaired."""
 
 _MOST_LINES, _LONGEST, _MOST_TRIALS, _MOST_WHOLE = 30, 1_500, 400, 4
@@ -47,7 +47,7 @@ class _Lines(NamedTuple):
     end: int
 
 
-class _Mend(NamedTuple):
+class _Change(NamedTuple):
     """A repair: at the index `at`, `written` takes the place of `removed`."""
 
     at: int
@@ -57,75 +57,77 @@ class _Mend(NamedTuple):
     def apply(self, text: str) -> str:
         return text[: self.at] + self.written + text[self.at + len(self.removed) :]
 
-    def moved(self, by: int) -> _Mend:
+    def moved(self, by: int) -> _Change:
         return self._replace(at=self.at + by)
 
 
-def parse_mended(source: Source, report: Report) -> Tree | None:
+def parse_with_recovery(source: Source, report: Report) -> Tree | None:
     """As `yaml_tree.parse`; of a text with a lost or wrong sign, the tree without that fault."""
     found: Report = []
-    doubts = Doubts([], [], [])
-    tree = parse(source, found, doubts)
-    if not any(doubts) or len(source.text) > MOST_CHARACTERS:
+    anomalies = ParseAnomalies([], [], [])
+    tree = parse(source, found, anomalies)
+    if not any(anomalies) or len(source.text) > MOST_CHARACTERS:
         report.extend(found)
         return tree
-    if doubts.stops and CONFLICT.search(source.text) is not None:
+    if anomalies.stops and CONFLICT.search(source.text) is not None:
         report.extend(found)
         return tree
-    text, mends, sure = source.text, Mended(source.text, ()), True
+    text, offsets, sure = source.text, OffsetMap(source.text, ()), True
     reports: Report = []
     tried: set[int] = set()
-    while len(mends.changes) < MOST_MENDS:
-        best = _mend(text, doubts, tried)
+    while len(offsets.changes) < MOST_CHANGES:
+        best = _best_change(text, anomalies, tried)
         if best is None:
-            moved = _moved(source, text, mends, doubts, reports)
+            moved = _moved(source, text, offsets, anomalies, reports)
             if moved is None:
                 break
-            text, mends, doubts = moved
+            text, offsets, anomalies = moved
             continue
-        mend, is_only = best
+        change, is_only = best
         sure = sure and is_only
-        repaired = mend.apply(text)
-        reports.append(_finding(source, mends, text, repaired, mend, bool(doubts.stops)))
-        change = (mend.at, len(mend.removed), len(mend.written))
-        text, mends = repaired, Mended(repaired, (*mends.changes, change))
-        doubts = Doubts([], [], [])
-        parse(Source(source.name, text), [], doubts)
+        repaired = change.apply(text)
+        reports.append(_finding(source, offsets, text, repaired, change, bool(anomalies.stops)))
+        size = (change.at, len(change.removed), len(change.written))
+        text, offsets = repaired, OffsetMap(repaired, (*offsets.changes, size))
+        anomalies = ParseAnomalies([], [], [])
+        parse(Source(source.name, text), [], anomalies)
     if not reports:
         report.extend(found)
         return tree
     report.extend(reports)
-    if doubts.stops or not sure:
+    if anomalies.stops or not sure:
         return None
-    return parse(source, report, None, mends)
+    return parse(source, report, None, offsets)
 
 
 def _moved(
-    source: Source, text: str, mends: Mended, doubts: Doubts, reports: Report
-) -> tuple[str, Mended, Doubts] | None:
+    source: Source, text: str, offsets: OffsetMap, anomalies: ParseAnomalies, reports: Report
+) -> tuple[str, OffsetMap, ParseAnomalies] | None:
     """The text in which a wrong indentation is corrected, which is reported, the changes up to it,
-    and the doubts that are left; None without one."""
-    for index in (*doubts.stops, *(() if doubts.stops else doubts.steps)):
-        move = best_move(text, index, stops=bool(doubts.stops))
+    and the anomalies that are left; None without one."""
+    for index in (*anomalies.stops, *(() if anomalies.stops else anomalies.steps)):
+        move = best_move(text, index, stops=bool(anomalies.stops))
         if move is None:
             continue
-        repaired, changed = moved_text(text, move, mends)
-        left = Doubts([], [], [])
+        repaired, changed = moved_text(text, move, offsets)
+        left = ParseAnomalies([], [], [])
         parse(Source(source.name, repaired), [], left)
-        if not left.stops or (doubts.stops and min(left.stops) > max(doubts.stops) + _BEYOND):
-            reports.append(move_finding(source, text, mends, move, stops=bool(doubts.stops)))
+        if not left.stops or (anomalies.stops and min(left.stops) > max(anomalies.stops) + _BEYOND):
+            reports.append(move_finding(source, text, offsets, move, stops=bool(anomalies.stops)))
             return repaired, changed, left
     return None
 
 
-def _mend(text: str, doubts: Doubts, tried: set[int]) -> tuple[_Mend, bool] | None:
-    """The best repair for the first doubt, and whether no other is as good; None if nothing repairs
-    it. `tried` are the beginnings of the lines in which nothing did."""
-    stops = bool(doubts.stops)
-    best: tuple[float, _Mend] | None = None
+def _best_change(
+    text: str, anomalies: ParseAnomalies, tried: set[int]
+) -> tuple[_Change, bool] | None:
+    """The best change for the first anomaly, and whether no other is as good; None if none repairs
+    it. `tried` are the beginnings of the lines in which none did."""
+    stops = bool(anomalies.stops)
+    best: tuple[float, _Change] | None = None
     costs: list[float] = []
     seen: set[_Lines] = set()
-    for index in [*doubts.stops, *(() if stops else doubts.places)]:
+    for index in [*anomalies.stops, *(() if stops else anomalies.places)]:
         colon = _lost_colon(text, index) if stops else None
         if colon is not None and _holds(colon.apply(text), _lines(text, colon.at), stops):
             return colon, True
@@ -135,12 +137,12 @@ def _mend(text: str, doubts: Doubts, tried: set[int]) -> tuple[_Mend, bool] | No
         if lines.start in tried or lines in seen or lines.end - lines.start > _LONGEST:
             continue
         seen.add(lines)
-        for cost, mend in _ranked(text, lines)[:_MOST_WHOLE]:
-            if not _holds(mend.apply(text), lines, stops):
+        for cost, change in _ranked(text, lines)[:_MOST_WHOLE]:
+            if not _holds(change.apply(text), lines, stops):
                 continue
             costs.append(cost)
             if best is None or cost < best[0]:
-                best = (cost, mend)
+                best = (cost, change)
         if best is None:
             tried.add(lines.start)
         elif not stops:
@@ -151,19 +153,19 @@ def _mend(text: str, doubts: Doubts, tried: set[int]) -> tuple[_Mend, bool] | No
 _KEY_ALONE = re.compile(r"( *)(?:- +)*[A-Za-z_][\w-]* *\n(?=\1 +(?:- +)*[\w-]+:(?: |\n))")
 
 
-def _lost_colon(text: str, index: int) -> _Mend | None:
+def _lost_colon(text: str, index: int) -> _Change | None:
     """The colon of a key that is alone on the line of an index, with entries below it."""
     found = _KEY_ALONE.match(text, text.rfind("\n", 0, index) + 1)
-    return _Mend(len(found[0].rstrip()) + found.start(), "", ":") if found is not None else None
+    return _Change(len(found[0].rstrip()) + found.start(), "", ":") if found is not None else None
 
 
 def _holds(text: str, lines: _Lines, stops: bool) -> bool:
     """Whether a repaired text is YAML up to the end of the repaired lines and some lines more."""
-    doubts = Doubts([], [], [])
-    parse(Source("", text), [], doubts)
+    anomalies = ParseAnomalies([], [], [])
+    parse(Source("", text), [], anomalies)
     if not stops:
-        return not doubts.stops
-    return all(stop > lines.end + _BEYOND for stop in doubts.stops)
+        return not anomalies.stops
+    return all(stop > lines.end + _BEYOND for stop in anomalies.stops)
 
 
 _BEYOND = 2
@@ -195,25 +197,27 @@ def _line_end(text: str, index: int) -> int:
     return len(text) if end < 0 else end
 
 
-def _ranked(text: str, lines: _Lines) -> list[tuple[float, _Mend]]:
+def _ranked(text: str, lines: _Lines) -> list[tuple[float, _Change]]:
     """The repairs of lines after which they have the form of a script, the best first."""
     part = text[lines.start : lines.end]
     if part.rstrip().endswith(_GOES_ON):
         return []  # it is still being written
     before = _cost(part, text)
     most = 1.0 if before is None else min(1.0, before - 0.3)
-    ranked: list[tuple[float, _Mend]] = []
-    made = {mend.apply(part): mend for mend in islice(_mends(part), _MOST_TRIALS)}
-    for repaired, mend in made.items() if most > 0 else ():
+    ranked: list[tuple[float, _Change]] = []
+    made = {change.apply(part): change for change in islice(_changes(part), _MOST_TRIALS)}
+    for repaired, change in made.items() if most > 0 else ():
         cost = _cost(repaired, text)
         if cost is not None and cost < most:
-            ranked.append((cost + 0.1 * bool(mend.removed.strip(" =")), mend.moved(lines.start)))
+            ranked.append(
+                (cost + 0.1 * bool(change.removed.strip(" =")), change.moved(lines.start))
+            )
     return sorted(ranked, key=lambda pair: (pair[0], _order(pair[1])))
 
 
-def _order(mend: _Mend) -> int:
+def _order(change: _Change) -> int:
     """The order of repairs that are equally good: a bracket is closed as late as possible."""
-    return -mend.at if mend.written in ("]", "}") else mend.at
+    return -change.at if change.written in ("]", "}") else change.at
 
 
 _QUOTED = re.compile(r"""(?<![^\s\[{,:(])(?:"(?:[^"\\]|\\.)*"|'(?:[^']|'')*')(?!\w)""")
@@ -233,7 +237,7 @@ _NAME_LIST = re.compile(rf"\b(?:{'|'.join(_LISTED)}): (\w+(?:, *\w+)+)(?=,? *}}|
 """A list without its brackets in a mapping in braces: `{value: 0.9, 1.2}`."""
 
 
-def _mends(part: str) -> Iterator[_Mend]:
+def _changes(part: str) -> Iterator[_Change]:
     """The repairs of a part of a text that are possible."""
     plain = _QUOTED.sub(lambda found: "\0" * len(found[0]), part)
     comment = _COMMENT.search(plain)
@@ -248,45 +252,45 @@ def _mends(part: str) -> Iterator[_Mend]:
             missing, much = (closing, opening) if surplus > 0 else (opening, closing)
             yield from _with_sign(plain, missing, much)
     for found in (*_NUMBER_LIST.finditer(plain), *_NAME_LIST.finditer(plain)):
-        yield _Mend(found.start(1), found[1], f"[{found[1]}]")
+        yield _Change(found.start(1), found[1], f"[{found[1]}]")
     if quotes:
         return
     for found in _EQUALS.finditer(plain):
-        yield _Mend(found.start(), found[0], ": ")
+        yield _Change(found.start(), found[0], ": ")
     for found in _NO_SPACE.finditer(plain):
-        yield _Mend(found.end(), "", " ")
+        yield _Change(found.end(), "", " ")
     for found in _GAP.finditer(plain):
         if plain.endswith("lambda", 0, found.start()) or " in " in plain:
             continue  # code without quotes, or a loop in the words of Python
-        yield _Mend(found.start(), "", ":")
-        yield _Mend(found.start(), "", ",")
+        yield _Change(found.start(), "", ":")
+        yield _Change(found.start(), "", ",")
 
 
-def _with_sign(part: str, missing: str, much: str) -> Iterator[_Mend]:
+def _with_sign(part: str, missing: str, much: str) -> Iterator[_Change]:
     """The repairs that write a sign where a value begins or ends, or remove one."""
     if missing not in "]}":
         for found in _START.finditer(part):
-            yield _Mend(found.end(), "", missing)
+            yield _Change(found.end(), "", missing)
     if missing in "[{":
         for found in re.finditer(rf": (?=\{much})", part):  # of `{}` or `[]`
-            yield _Mend(found.end(), "", missing)
+            yield _Change(found.end(), "", missing)
     if missing not in "[{":
         for found in _END.finditer(part):
-            yield _Mend(found.start(), "", missing)
+            yield _Change(found.start(), "", missing)
     for found in re.finditer(re.escape(much), part):
-        yield _Mend(found.start(), much, "")
+        yield _Change(found.start(), much, "")
         if missing != much:
             other = {"}": "]", "]": "}", "{": "[", "[": "{"}[much]
-            yield _Mend(found.start(), much, other)
+            yield _Change(found.start(), much, other)
 
 
 def _cost(part: str, text: str) -> float | None:
     """How far lines of a text are from the form of a script; 0 if they have it, None if they are
     not YAML."""
     found: Report = []
-    doubts = Doubts([], [], [])
-    tree = parse(Source("", part), found, doubts)
-    if tree is None or doubts.stops or found:
+    anomalies = ParseAnomalies([], [], [])
+    tree = parse(Source("", part), found, anomalies)
+    if tree is None or anomalies.stops or found:
         return None
     if isinstance(tree, Scalar):
         return 2.0
@@ -396,33 +400,33 @@ _OTHER_MEANING = "YAML reads the parts beside this place as one name or text"
 
 
 def _finding(
-    source: Source, before: Mended, text: str, repaired: str, mend: _Mend, stops: bool
+    source: Source, before: OffsetMap, text: str, repaired: str, change: _Change, stops: bool
 ) -> Diagnostic:
     """SM001 for a repair."""
-    at, sign = mend.at, mend.written
-    end = at + len(mend.removed)
+    at, sign = change.at, change.written
+    end = at + len(change.removed)
     edit = Edit(span=Span(source, before.back(at), before.back(end)), text=sign)
     repair = Repair(edits=(edit,), certainty=Certainty.LIKELY, operator="write a sign")
-    left, right, piece = _word_before(text, at), _word_after(text, end), _piece(repaired, mend)
+    left, right, piece = _word_before(text, at), _word_after(text, end), _piece(repaired, change)
     effect = None if stops else _OTHER_MEANING
-    if sign == f"[{mend.removed}]":
+    if sign == f"[{change.removed}]":
         effect = "YAML reads the values after the first one as fields without a value"
-        message = f"the brackets around `{mend.removed}` are missing"
+        message = f"the brackets around `{change.removed}` are missing"
     elif sign == ": ":
         message = f"a `:` is due after `{left}`, not `=`"
-        at += mend.removed.index("=")
+        at += change.removed.index("=")
         end = at + 1
-    elif mend.removed:
-        message = f"this `{mend.removed}` is one too many"
+    elif change.removed:
+        message = f"this `{change.removed}` is one too many"
         if sign:
-            message = f"this `{mend.removed}` must be `{sign}`"
+            message = f"this `{change.removed}` must be `{sign}`"
     elif sign == " ":
         message, at = SPACE_MISSING, at - len(left) - 1
     elif sign in "[{" or (sign in "\"'" and _starts(text, at)):
         message, end = f"a `{sign}` is missing before `{right}`", at + len(right)
     elif sign == ":" and not text[at : _line_end(text, at)].strip():
         message, at = "a `:` is missing after this key", at - len(left)
-        piece = repaired[repaired.rfind("\n", 0, mend.at) + 1 : mend.at + 1].strip()
+        piece = repaired[repaired.rfind("\n", 0, change.at) + 1 : change.at + 1].strip()
     elif not text[at : _line_end(text, at)].strip():
         message, at = f"a `{sign}` is missing at the end of this line", at - 1
     else:
@@ -432,7 +436,7 @@ def _finding(
         span,
         message,
         f"write `{piece}`",
-        arguments=("sign", sign, str(mend.at)),
+        arguments=("sign", sign, str(change.at)),
         effect=effect,
         repairs=(repair,),
     )
@@ -461,11 +465,11 @@ def _word_after(text: str, at: int) -> str:
 _LONGEST_PIECE = 110
 
 
-def _piece(text: str, mend: _Mend) -> str:
+def _piece(text: str, change: _Change) -> str:
     """The smallest entry of a repaired text that has the sign, or the words around the sign if that
     is long."""
-    start, end = mend.at, mend.at + len(mend.written)
-    lines = _lines(text, mend.at)
+    start, end = change.at, change.at + len(change.written)
+    lines = _lines(text, change.at)
     tree = parse(Source("", text[lines.start : lines.end]), [])
     best = ""
     todo: list[Tree] = [tree] if tree is not None else []
@@ -484,5 +488,5 @@ def _piece(text: str, mend: _Mend) -> str:
                 short = len(piece) <= _LONGEST_PIECE and "\n" not in piece
                 best = piece if short and ":" in piece else best
     after = _word_after(text, end)
-    beside = " " if after and mend.written in (":", ",") else ""
+    beside = " " if after and change.written in (":", ",") else ""
     return best or f"{_word_before(text, start)}{text[start:end]}{beside}{after}"

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from smachac.analysis.context import Context
-from smachac.analysis.type_lattice import is_open, present
+from smachac.analysis.type_lattice import is_unknown, present
 from smachac.checks import notation
 from smachac.checks.classes.types_with_code import own_types, used_here
 from smachac.checks.classes.undeclared_accesses import lone_output
@@ -251,7 +251,7 @@ def _of_same_type(type_: StateType, key: str, userdata: str) -> str:
     """The part of a help with the only input that has the same type as an output. Empty if there is
     no such input, or if the type is a plain number, text or boolean."""
     wanted = next(member.type for member in type_.output_keys if member.name == key)
-    if is_open(wanted) or (wanted.name in SCALARS and not wanted.args):
+    if is_unknown(wanted) or (wanted.name in SCALARS and not wanted.args):
         return ""
     found = [
         member.name for member in type_.input_keys if member.type == wanted and member.name != key

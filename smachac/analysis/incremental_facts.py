@@ -46,7 +46,7 @@ class Preorder:
         return ends
 
 
-class Found(NamedTuple):
+class IncrementalResult(NamedTuple):
     """What a function found at the states of a preorder: `begins` has for each state the number of
     the things found before."""
 
@@ -56,8 +56,8 @@ class Found(NamedTuple):
 
 
 def found_at(
-    states: Preorder, fact: Fact, given: tuple[object, ...], before: Found | None
-) -> Found:
+    states: Preorder, fact: Fact, given: tuple[object, ...], before: IncrementalResult | None
+) -> IncrementalResult:
     """What a function finds at states, in their order. `before`: what it found in the machine
     before a change; what holds still is taken from there."""
     begins: list[int] = []
@@ -66,7 +66,7 @@ def found_at(
         for path, node in states.nodes:
             begins.append(len(things))
             things.extend(fact(path, node, *given))
-        return Found(states, begins, tuple(things))
+        return IncrementalResult(states, begins, tuple(things))
     while len(begins) < len(states.nodes):
         path, node = states.nodes[len(begins)]
         number = before.states.numbers.get(path)
@@ -80,4 +80,4 @@ def found_at(
         more = len(things) - first
         begins.extend([begin + more for begin in before.begins[number:end]])
         things.extend(before.things[first:last])
-    return Found(states, begins, tuple(things))
+    return IncrementalResult(states, begins, tuple(things))
