@@ -99,8 +99,8 @@ class _Region:
 
 class Evaluator:
     """Evaluates modules, functions and classes; `made` are the objects of SMACH's classes in the
-    order in which they were made, `called` the functions that were called. `exhausted`: a part of
-    the file took too many steps."""
+    order in which they were made, `called` the functions that were called, `generators` whether one
+    of them is a generator. `exhausted`: a part of the file took too many steps."""
 
     def __init__(self, project: Project) -> None:
         self.project = project
@@ -112,6 +112,7 @@ class Evaluator:
         self.regions: list[_Region] = []
         self.made: list[Instance] = []
         self.called: set[ast.AST] = set()
+        self.generators: dict[ast.AST, bool] = {}
         self.opened: list[Value] = []
         self.unsure = 0
         self.orphans = 0
@@ -1421,7 +1422,9 @@ class Evaluator:
         if len(self.calls) >= DEEPEST_CALL or (self.unsure and len(before) >= MOST_RECURSIVE):
             self._lose_in(arguments, adds=len(before) < 2 or self.adds > before[0])
             return UNKNOWN
-        if isinstance(node, ast.AsyncFunctionDef) or _yields(node):
+        if node not in self.generators:
+            self.generators[node] = isinstance(node, ast.AsyncFunctionDef) or _yields(node)
+        if self.generators[node]:
             return UNKNOWN
         slots = self._parameters(function, arguments)
         me = arguments.positional[0] if arguments.positional else None

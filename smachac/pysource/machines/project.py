@@ -102,7 +102,7 @@ class Repository:
         if key in self.loaded:
             return self.loaded[key]
         source = self.read(file)
-        text = module_text(source) if source is not None else None
+        text = module_text(source, compiled=main) if source is not None else None
         if text is None:
             found = Unknown(reason=file)
             self.loaded[key] = found
@@ -155,9 +155,10 @@ def _setting(name: str) -> re.Pattern[str]:
     return re.compile(rf"\.{word}\b\s*(?:=[^=]|:)|setattr\([^,]*,\s*[\"']{word}[\"']")
 
 
-def module_text(source: Source) -> PythonText | None:
-    """The text of a module for Python 3 or 2; None if it cannot be read."""
-    text = python_text(source, template=False)
+def module_text(source: Source, *, compiled: bool = True) -> PythonText | None:
+    """The text of a module for Python 3 or 2; None if it cannot be read. `compiled`: nor if the
+    compiler of Python refuses it, which takes as long as parsing it."""
+    text = python_text(source, template=False, compiled=compiled)
     if text is None:
         with contextlib.suppress(NotInstalledError):
             text = python2_text(source)
