@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeAlias
 
 from smachac.checks import RULES, check_machine
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, grouped, in_order
@@ -24,6 +25,7 @@ from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import walk
 from smachac.pysource.coverage import Coverage, coverage_of, unknown_states
 from smachac.pysource.machines.class_facts import ClassReader
+from smachac.pysource.machines.constructions import Constructions, constructions
 from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import Evaluator
 from smachac.pysource.machines.graph import Graph, graphs
@@ -50,6 +52,9 @@ _DEFAULT_RULES = tuple(rule for rule in RULES if rule.code.code in CANNOT_WORK)
 IN_ALL = frozenset({"SM201", "SM203"})
 """The codes of findings that count only if they are true of each instance of a container: another
 one can have other transitions."""
+
+Built: TypeAlias = tuple[Graph, Constructions]
+"""A machine with the constructions of its states."""
 
 MOST_FILES, MOST_ENTRIES = 20_000, 200_000
 """The most Python files, and files and folders, of a repository that are searched for modules."""
@@ -80,9 +85,11 @@ class PythonProject:
         self.caches: dict[str, Cache] = {}
         self.repositories: dict[tuple[str, bool], tuple[Repository, Evaluator, ClassReader]] = {}
 
-    def read(self, path: Path, *, everything: bool = False) -> PythonFile:
+    def read(
+        self, path: Path, *, everything: bool = False, built: list[Built] | None = None
+    ) -> PythonFile:
         """The machines of a file with the findings about them; with `everything`, those of all
-        rules."""
+        rules. `built` gets each machine with the constructions of its states."""
         report: Report = []
         source = self.disk.read(path, report)
         library = disk_library(path, report, disk=self.disk, codes=CODES)
@@ -108,8 +115,15 @@ class PythonProject:
         def made(roots: Roots) -> list[Graph]:
             return [*graphs(roots, evaluator, reader)]
 
+        def made_first(roots: Roots) -> list[Graph]:
+            found = made(roots)
+            if built is not None:
+                built.extend((graph, constructions(graph, evaluator, repository))
+                             for graph in found)  # fmt: skip
+            return found
+
         with deep_recursion():
-            several = machines_of(repository, evaluator, str(path), made)
+            several = machines_of(repository, evaluator, str(path), made_first)
             whole = [graph for some in several for graph in some]
             findings = [item for graph in whole for item in check_machine(graph.machine, rules)]
             findings = _in_file(findings, str(path))

@@ -32,6 +32,7 @@ from smachac.pysource.machines.values import (
     Arguments,
     Class,
     Const,
+    Creation,
     DictValue,
     Frame,
     Function,
@@ -1362,7 +1363,7 @@ class Evaluator:
             case Function():
                 return self.run(function, arguments)
             case Class() | LibraryClass():
-                return self.make(function, arguments, span, frame)
+                return self.make(function, arguments, span, frame, node)
             case Instance():
                 inner = self.of_class(function.cls, "__call__", function)
                 if isinstance(inner, Method):
@@ -1473,8 +1474,9 @@ class Evaluator:
         return slots
 
     def make(
-        self, cls: Class | LibraryClass, arguments: Arguments, span: Span | None, frame: Frame
-    ) -> Value:
+        self, cls: Class | LibraryClass, arguments: Arguments, span: Span | None, frame: Frame,
+        node: ast.expr | None = None,
+    ) -> Value:  # fmt: skip
         """A new object of a class."""
         if isinstance(cls, LibraryClass) and not cls.name.startswith("smach"):
             return self.project.new_object(self, cls, arguments)
@@ -1482,7 +1484,7 @@ class Evaluator:
             return self._member(cls, arguments)
         order = self.classes(cls)
         opaque = any(isinstance(base, Unknown | OneOf) for base in order)
-        made = Instance(cls, {}, span, opaque)
+        made = Instance(cls, {}, span, opaque, Creation(node, frame, arguments))
         if any(isinstance(base, LibraryClass) and base.name.startswith("smach") for base in order):
             self.made.append(made)
         if isinstance(cls, Class) and cls.is_dataclass and "__init__" not in cls.slots:

@@ -51,6 +51,12 @@ class Repository:
     def new_object(self, evaluator: Evaluator, cls: LibraryClass, arguments: Arguments) -> Value:
         return new_object(evaluator, cls, arguments)
 
+    def has(self, file: str) -> bool:
+        """Whether a file is one of the repository."""
+        path = PurePath(file)
+        stem = path.parent.name if path.name == "__init__.py" else path.stem
+        return file in self.by_stem.get(stem, ())
+
     def load(self, evaluator: Evaluator, name: str, user: ModuleValue) -> Value:
         """A module by its dotted name; unknown, with its name, if the repository has none."""
         if not name:

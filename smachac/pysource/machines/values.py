@@ -194,14 +194,24 @@ class LibraryClass:
         return self.name.rpartition(".")[2]
 
 
+class Creation(NamedTuple):
+    """The call that made an object: its code, the frame in which it was evaluated, and the
+    arguments."""
+
+    node: ast.expr | None
+    frame: Frame
+    arguments: Arguments
+
+
 @dataclass(eq=False, slots=True)
 class Instance:
-    """An object of a class; `span` is the place of the call that made it."""
+    """An object of a class; `span` is the place of the call that made it, `made_by` the call."""
 
     cls: Class | LibraryClass
     slots: Slots
     span: Span | None = None
     opaque: bool = False
+    made_by: Creation | None = None
 
     def __post_init__(self) -> None:
         self.slots = OwnSlots(self.slots, self.cls if isinstance(self.cls, Class) else None)
