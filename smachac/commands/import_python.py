@@ -33,8 +33,8 @@ examples:
   smachac build project/main.yml --target python      and generate its program
 
 The code of your states stays where it is: the scripts name your classes. The command prints what
-it could not take over, and proves that each script has the same graph as the machine in Python. Your
-code is not run. Files that were edited since an import are never overwritten.
+it could not take over, and proves that each script has the same graph as the machine in Python.
+Your code is not run. Files that were edited since an import are never overwritten.
 
 exit codes: 0 all machines were imported and proven, 1 a machine was not, or a file is in the way,
 2 wrong usage, 70 a bug in smachac
@@ -120,7 +120,8 @@ def _put(made: Imported, arguments: Namespace) -> int:
         if not written:
             print(f"{shown(folder)} is up to date")
     for lost in made.lost:
-        print(f"not taken over: {_place(lost.span)}: {shown(lost.text)}\n  help: {shown(lost.help)}")
+        print(f"not taken over: {_place(lost.span)}: {shown(lost.text)}")
+        print(f"  help: {shown(lost.help)}")
     return _print_proofs(made, arguments)
 
 
@@ -139,14 +140,17 @@ def _on_disk(folder: Path, texts: Mapping[str, str]) -> tuple[list[str], dict[st
         if not os.path.lexists(path):
             changed[name] = text
             continue
+        changed[name] = text
+        if path.is_symlink() or not path.is_file():
+            edited.append(name)
+            continue
         try:
             before = read_bytes(path).decode("utf-8")
         except (ValueError, TooBigError):
             before = ""
         if before == text:
-            continue
-        changed[name] = text
-        if not is_unedited(before) or path.is_symlink():
+            del changed[name]
+        elif not is_unedited(before):
             edited.append(name)
     return edited, changed
 
@@ -166,8 +170,12 @@ def _print_proofs(made: Imported, arguments: Namespace) -> int:
         else:
             print(f"proof: the graph of {names}: {counts}")
         if proof.report:
-            print(f"{shown(proof.script)} has {_count(len(proof.report), 'error')}, as the machine"
-                  f" in Python: smachac check {shown(arguments.output / proof.script)}")  # fmt: skip
+            errors = _count(len(proof.report), "error")
+            script = shown(arguments.output / proof.script)
+            print(f"{shown(proof.script)} has {errors}: `smachac check {script}` shows them")
+    known = {item.code for item in made.file.report}
+    report = [item for proof in made.proofs for item in proof.report if item.code not in known]
+    print_report(report, arguments, sys.stderr)
     return OK if proven and not made.incomplete else FINDINGS
 
 

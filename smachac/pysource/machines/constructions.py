@@ -23,7 +23,7 @@ from smachac.ir.traversal import outcome_names, written_children
 from smachac.pysource.machines.evaluator import BudgetError, Evaluator
 from smachac.pysource.machines.graph import Graph
 from smachac.pysource.machines.project import Repository
-from smachac.pysource.machines.smach_library import parameters_of
+from smachac.pysource.machines.smach_library import parameters_of, takes_node
 from smachac.pysource.machines.values import (
     Arguments,
     Class,
@@ -53,13 +53,15 @@ MOST_COMBINATIONS = 256
 class Argument:
     """An argument of a call. `name` is empty for one that only has a place. `data` is its value,
     with code where YAML has no such value; None with `is_known` False: not known, `text` is its
-    code. `parameter`: the parameter of the container class around it whose value it is."""
+    code. `parameter`: the parameter of the container class around it whose value it is. `modules`
+    are those that code in it names."""
 
     name: str
     data: Data
     text: str = ""
     is_known: bool = True
     parameter: str = ""
+    modules: tuple[str, ...] = ()
     span: Span = field(compare=False)
 
 
@@ -76,7 +78,8 @@ class Construction:
     """How a state is made. `cls` is its class; None if no other module can import it, for the
     reason `obstacle`. `library` is the name of a class of SMACH that the code uses itself, `short`
     a name for the state type. `types` are the types of ROS in the arguments, by the parameter:
-    `std_srvs/SetBool`. `file` has the class, `cls_span` is its place."""
+    `std_srvs/SetBool`. `file` has the class, `cls_span` is its place. `node`: the first argument
+    was the node of ROS 2."""
 
     span: Span
     cls: ClassPlace | None = None
@@ -86,6 +89,7 @@ class Construction:
     arguments: tuple[Argument, ...] = ()
     types: Mapping[str, str] = field(default_factory=dict)
     file: str = ""
+    node: bool = False
     cls_span: Span | None = field(default=None, compare=False)
 
 
@@ -189,12 +193,14 @@ class _Reader:
             return self._of_class(made, made.cls, span, around)
         found = self._arguments(made, around)
         named = {argument.name: argument for argument in found}
+        if "node" in named:
+            found = tuple(argument for argument in found if argument.name != "node")
         callback = next((argument for argument in found if argument.name.endswith("cb")
                          and not argument.is_known), None)  # fmt: skip
         obstacle = "" if callback is None else _no_import(callback.text)
         return Construction(
             span=span, library=made.cls.name, short=_short(named.get("cb"), made.cls.short),
-            arguments=found, obstacle=obstacle, types=self._types(made),
+            arguments=found, obstacle=obstacle, types=self._types(made), node="node" in named,
         )  # fmt: skip
 
     def _of_class(
@@ -281,6 +287,8 @@ class _Reader:
         assert made.made_by is not None
         _, frame, given = made.made_by
         names = self._parameters(made)
+        if takes_node(made.cls, given):
+            names = ["node", *names]
         place = made.span or self.graph.machine.root.span
         found = []
         written = _written(made)
@@ -316,12 +324,8 @@ class _Reader:
         text = ast.unparse(node) if node is not None else name
         parameter = self._parameter(value, node, frame, around)
         data = _plain(value, span)
-        if data is UNWRITTEN:
-            code = self._code(value, node, frame)
-            data = Expression(text=code, span=span) if code is not None else UNWRITTEN
-        known = data is not UNWRITTEN
-        return Argument(name=name, data=data if known else None, text=text, is_known=known,
-                        parameter=parameter, span=span)  # fmt: skip
+        code = self._code(value, node, frame) if data is UNWRITTEN else None
+        return _argument(name, data, code, text, parameter, span)
 
     def _parameter(
         self, value: Value, node: ast.expr | None, frame: Frame, around: Instance | None
@@ -336,19 +340,22 @@ class _Reader:
         bound = dict(zip(names, given.positional, strict=False)) | dict(given.named)
         return node.id if bound.get(node.id) is value else ""
 
-    def _code(self, value: Value, node: ast.expr | None, frame: Frame) -> str | None:
-        """Code for a value that works in another module; None: there is none."""
+    def _code(
+        self, value: Value, node: ast.expr | None, frame: Frame
+    ) -> tuple[str, tuple[str, ...]] | None:
+        """Code for a value that works in another module, and the modules in it; None: there is
+        none."""
         if isinstance(value, Function | Class) and value.frame.module.text is not None:
             name, folder, obstacle = self._module_place(value.frame.module.file)
             if not obstacle and self._has(value.frame.module, value.name, value.node):
                 self.modules[name] = folder
-                return f"{name}.{value.name}"
+                return f"{name}.{value.name}", (name,)
         if node is None:
             return None
         copied = copy.deepcopy(node)
         names = _Names(self, frame)
         found = names.visit(copied)
-        return None if names.is_local else ast.unparse(found)
+        return None if names.is_local else (ast.unparse(found), tuple(sorted(names.modules)))
 
     def module_of(self, name: str, frame: Frame) -> str | None:
         """The module from which code in another one gets a name; empty for one of Python; None if
@@ -372,6 +379,8 @@ class _Reader:
         assert made.made_by is not None
         written = _written(made)
         names = self._parameters(made)
+        if takes_node(made.cls, made.made_by.arguments):
+            names = ["node", *names]
         found = {}
         for at, value in [*enumerate(made.made_by.arguments.positional),
                           *made.made_by.arguments.named]:  # fmt: skip
@@ -397,13 +406,10 @@ class _Reader:
 
     def _without_code(self, name: str, value: Value, span: Span) -> Argument:
         """A value that is no argument of a call."""
-        data = _plain(value, span)
+        data, code = _plain(value, span), None
         if data is UNWRITTEN and isinstance(value, Function | Class):
             code = self._code(value, None, value.frame)
-            data = Expression(text=code, span=span) if code is not None else UNWRITTEN
-        known = data is not UNWRITTEN
-        return Argument(name=name, data=data if known else None, is_known=known,
-                        text="" if known else f"{name}", span=span)  # fmt: skip
+        return _argument(name, data, code, name, "", span)
 
     def _items(self, made: Instance, around: Instance | None, span: Span) -> Argument:
         """The items of an iterator; those that a function without parameters returns."""
@@ -477,6 +483,7 @@ class _Names(ast.NodeTransformer):
         self.reader = reader
         self.frame = frame
         self.inner: set[str] = set()
+        self.modules: set[str] = set()
         self.is_local = False
 
     def visit_Lambda(self, node: ast.Lambda) -> ast.AST:
@@ -496,11 +503,25 @@ class _Names(ast.NodeTransformer):
             self.is_local = True
         if not module:
             return node
+        self.modules.add(module)
         return ast.parse(f"{module}.{node.id}", mode="eval").body
 
 
 UNWRITTEN = object()
 """In place of the data of a value that YAML cannot hold."""
+
+
+def _argument(
+    name: str, data: Data | object, code: tuple[str, tuple[str, ...]] | None, text: str,
+    parameter: str, span: Span,
+) -> Argument:  # fmt: skip
+    """An argument with its data, or else with code; without both it is not known."""
+    modules: tuple[str, ...] = ()
+    if code is not None:
+        data, modules = Expression(text=code[0], span=span), code[1]
+    known = data is not UNWRITTEN
+    return Argument(name=name, data=data if known else None, text=text, is_known=known,  # type: ignore[arg-type]
+                    parameter=parameter, modules=modules, span=span)  # fmt: skip
 
 
 def _plain(value: Value, span: Span) -> Data | object:

@@ -211,6 +211,12 @@ def _ready(name: str) -> Run:
     return run
 
 
+def takes_node(cls: Value, given: Arguments) -> bool:
+    """Whether the first argument for a class of smach_ros is the node of ROS 2."""
+    name = cls.name if isinstance(cls, LibraryClass) else ""
+    return name in _PARAMETERS and _without_node(name, given) is not given
+
+
 def _without_node(name: str, given: Arguments) -> Arguments:
     """The arguments without the node, which smach_ros of ROS 2 takes first: an object before a
     name."""

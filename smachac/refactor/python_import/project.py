@@ -12,7 +12,7 @@ from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.diagnostics.source import Source, Span
 from smachac.driver import CODES, Analysis, analyse
 from smachac.frontend.files import BUILT_IN, Disk, disk_library, lies_inside
-from smachac.ir.nodes import Leaf
+from smachac.ir.nodes import Leaf, Node
 from smachac.ir.traversal import walk
 from smachac.pysource.coverage import unknown_states
 from smachac.pysource.machines.graph import ELSEWHERE, Graph
@@ -30,7 +30,7 @@ from smachac.refactor.python_import.scripts import (
     settings,
     state_count,
 )
-from smachac.refactor.python_import.state_types import TO_WRITE, relative
+from smachac.refactor.python_import.state_types import OWN_MODULE, relative
 
 MARK = re.compile(
     r"(?:# |\{#- )Imported from .* by smachac; the lines below have the sha256 ([0-9a-f]{16})\.?"
@@ -45,8 +45,7 @@ ROUNDS = 3
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Proof:
     """The comparison of the graph of a script with that of its machine in Python. `script` is the
-    name of the file, `errors` the number of errors in the script, all of which the machine in
-    Python has as well."""
+    name of the file, `report` has the errors in it: the faults of the machine in Python."""
 
     script: str
     states: int
@@ -110,7 +109,7 @@ def _machines(built: Sequence[Built]) -> tuple[list[PythonMachine], list[Incompl
     """The machines that are known as a whole, and the others."""
     machines: list[PythonMachine] = []
     incomplete: list[Incomplete] = []
-    taken: set[str] = {"main", TO_WRITE}
+    taken: set[str] = {"main", OWN_MODULE}
     for _, constructions in built:
         taken |= {module.partition(".")[0].casefold() for module in constructions.modules}
     for graph, constructions in built:
@@ -128,12 +127,21 @@ def _machines(built: Sequence[Built]) -> tuple[list[PythonMachine], list[Incompl
 
 
 def _is_known(graph: Graph) -> bool:
-    """Whether all states and transitions of a machine are known."""
-    return not any(isinstance(node, Leaf) and node.synthetic and node.type == ELSEWHERE
-                   for _, node in walk(graph.machine.root))  # fmt: skip
+    """Whether all states and transitions of a machine are known, and it has states."""
+    nodes = [node for _, node in walk(graph.machine.root)]
+    return not any(_is_empty(node) or (isinstance(node, Leaf) and node.synthetic
+                                       and node.type == ELSEWHERE) for node in nodes)  # fmt: skip
+
+
+def _is_empty(node: Node) -> bool:
+    return not isinstance(node, Leaf) and not node.children
 
 
 def _unknown(graph: Graph) -> tuple[tuple[Span, str], ...]:
+    empty = {node.span: f"`{node.name}` has no states"
+             for _, node in walk(graph.machine.root) if _is_empty(node)}  # fmt: skip
+    if empty:
+        return tuple(empty.items())
     places = dict(graph.coverage.unknown)
     if not places:
         reasons = unknown_states(graph)
@@ -213,7 +221,8 @@ def _checked(made: ScriptFiles, folder: Path, file: PythonFile, disk: Disk) -> l
     known = {item.code for item in file.report}
     analyses: dict[str, Analysis] = {}
     for _ in range(ROUNDS):
-        analyses = {name: _analysis(name, made.texts, folder, disk) for name in made.main}
+        texts = {name: _marked(name, text, file.path.name) for name, text in made.texts.items()}
+        analyses = {name: _analysis(name, texts, folder, disk) for name in made.main}
         places: dict[str, dict[int, set[str]]] = {}
         for analysis in analyses.values():
             for item in analysis.report:
@@ -229,13 +238,14 @@ def _checked(made: ScriptFiles, folder: Path, file: PythonFile, disk: Disk) -> l
 
 
 def _allowed(text: str, places: Mapping[int, set[str]], name: str) -> str:
-    """A text with comments that allow findings in some of its lines."""
+    """A text with comments that allow findings in some lines of its file, which has one more line
+    at its top."""
     lines = text.split("\n")
     for number in sorted(places, reverse=True):
-        line = lines[number - 1]
+        line = lines[number - 2]
         space = line[: len(line) - len(line.lstrip(" "))]
         codes = ", ".join(sorted(places[number]))
-        lines.insert(number - 1, f"{space}# smachac: allow {codes} it is so in {name}")
+        lines.insert(number - 2, f"{space}# smachac: allow {codes} it is so in {name}")
     return "\n".join(lines)
 
 

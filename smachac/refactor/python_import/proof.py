@@ -104,10 +104,10 @@ def _different_rules(
     """The differences of two concurrences. With an `outcome_cb`, the rules of the script have to
     select what it selects, in every case."""
     yield from _unequal(path, "`join`", python.join, script.join)
-    for name, _ in callbacks.lost:
-        yield f"{path}: `{name}` was not taken over"
     if callbacks.decided is None:
-        if not any(name == "outcome_cb" for name, _ in callbacks.lost):
+        if any(name == "outcome_cb" for name, _ in callbacks.lost):
+            yield f"{path}: `outcome_cb` was not taken over"
+        else:
             yield from _unequal(path, "rules", {*_rules(python)}, {*_rules(script)})
             yield from _unequal(
                 path, "the default outcome", python.default_outcome, script.default_outcome

@@ -12,7 +12,6 @@ from smachac.frontend import schema
 from smachac.ir.nodes import (
     Concurrence,
     Container,
-    Expression,
     Iterator,
     Key,
     Leaf,
@@ -30,7 +29,12 @@ from smachac.pysource.machines.constructions import (
     Outcomes,
 )
 from smachac.records import dataclass, field
-from smachac.refactor.python_import.state_types import StateTypes, keys_text, relative
+from smachac.refactor.python_import.state_types import (
+    OWN_MODULE,
+    StateTypes,
+    keys_text,
+    relative,
+)
 from smachac.refactor.python_import.yaml_text import (
     data_text,
     mapping_text,
@@ -78,8 +82,10 @@ def script_files(
     """The project with the scripts of some machines. `folder` is that of the project, `ros` the
     version of ROS that the code uses, 0 for none, `taken` the names of the built-in state types."""
     writer = _Writer(folder, ros, taken)
-    for machine in machines:
-        writer.add(machine, "main" if len(machines) == 1 else machine.name)
+    stems = ["main"] if len(machines) == 1 else [machine.name for machine in machines]
+    writer.script_names.update(stem.casefold() for stem in stems)
+    for machine, stem in zip(machines, stems, strict=True):
+        writer.add(machine, stem)
     return writer.files()
 
 
@@ -135,7 +141,7 @@ class _Writer:
         self.made = ScriptFiles()
         self.sub_scripts: dict[str, str] = {}
         self.script_names: set[str] = set()
-        self.code: list[str] = []
+        self.used: set[str] = set()
         self.noted: set[tuple[Span, str]] = set()
         self.machine: PythonMachine
 
@@ -147,11 +153,12 @@ class _Writer:
         made = self.made
         made.texts.update(self.types.files())
         for found in self.types.known.values():
-            if found.obstacle:
-                self.lose(found.construction.span, f"the code of the state: {found.obstacle}",
-                          f"write `execute` of `{found.name}` in states_to_write.py")  # fmt: skip
-        if self._needs_base():
-            names = [name for name in made.modules if self._uses(name)]
+            obstacle = found.construction.obstacle
+            if obstacle:
+                self.lose(found.construction.span, f"the code of the state: {obstacle}",
+                          f"write `execute` of `{found.name}` in {OWN_MODULE}.py")  # fmt: skip
+        if self.used:
+            names = sorted(self.used)
             imports = "\n".join(f"import {name}" for name in names)
             program = "ROSProgram.tpl.py" if self.ros else "Program.tpl.py"
             made.texts[f"templates/{BASE}.yml"] = (
@@ -162,13 +169,6 @@ class _Writer:
                 f"{imports}\n{{%- endblock %}}\n"
             )
         return made
-
-    def _needs_base(self) -> bool:
-        return any(map(self._uses, self.made.modules))
-
-    def _uses(self, module: str) -> bool:
-        """Whether code in the scripts names a module."""
-        return any(re.search(rf"\b{re.escape(module)}\.", code) for code in self.code)
 
     def lose(self, span: Span, text: str, help: str) -> None:
         if (span, text) not in self.noted:
@@ -181,8 +181,7 @@ class _Writer:
 
     def data(self, argument: Argument, *, inside: bool = False) -> str:
         """The YAML of a known value."""
-        if isinstance(argument.data, Expression):
-            self.code.append(argument.data.text)
+        self.used.update(argument.modules)
         return data_text(argument.data, inside=inside)
 
     def constant(self, argument: Argument, name: str) -> str:
@@ -204,7 +203,7 @@ class _Writer:
         fields.pop("template")
         head = {"name": name_text(machine.name)}
         states = self.states(names, root, scope, "")
-        if self._needs_base():
+        if self.used:
             head["template"] = BASE
         elif self.ros:
             head["template"] = "ROSBase"
@@ -215,7 +214,6 @@ class _Writer:
         lines += ["states:", *states]
         self.made.texts[f"{stem}.yml"] = "\n".join(lines) + "\n"
         self.made.main[f"{stem}.yml"] = machine
-        self.script_names.add(stem.casefold())
 
     def states(self, names: Names, node: Container, scope: _Scope, indent: str) -> list[str]:
         """The lines of the states of a container."""
@@ -287,7 +285,7 @@ class _Writer:
     def _script_name(self, word: str) -> str:
         base = re.sub(r"\W+", "_", word).strip("_") or "machine"
         name, number = base, 2
-        while name.casefold() in {*self.script_names, "main"}:
+        while name.casefold() in self.script_names:
             name, number = f"{base}_{number}", number + 1
         self.script_names.add(name.casefold())
         return name

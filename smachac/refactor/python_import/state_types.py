@@ -1,11 +1,13 @@
-"""The state types of an imported machine: their interfaces, and templates where a class cannot be
-named in an interface alone."""
+"""The state types of an imported machine: their interfaces, which name the classes of the user, and
+a module with classes for what an interface cannot name: a function as a state, a parameter with the
+name of a field, a state whose code was not taken over."""
 
 from __future__ import annotations
 
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from smachac.diagnostics.source import Span
@@ -19,8 +21,8 @@ from smachac.refactor.python_import.yaml_text import mapping_text, name_text, na
 
 OPTIONAL = Type("optional", (ANY,))
 
-TO_WRITE = "states_to_write"
-"""The module with the classes of states that cannot be taken over."""
+OWN_MODULE = "imported_states"
+"""The module with the classes that an import writes."""
 
 _SIMPLE_ACTION = {
     "action_name": "action_server_namespace", "action_spec": "action", "goal": "goal",
@@ -78,17 +80,17 @@ def keys_text(keys: Iterable[Key]) -> str:
 
 @dataclass(slots=True, kw_only=True)
 class ImportedType:
-    """A state type to write. `variables` counts the states that set each; `code` is the reference
-    to the class, `template` the text of a template. Both are empty for a class that is to be
-    written by hand, as `obstacle` says."""
+    """A state type to write. `variables` counts the states that set each. `code` is the reference
+    to the class of the user; if it is empty, the import writes a class, which passes `fixed`
+    arguments and those variables that its parameters name in `passed`."""
 
     name: str
     leaf: Leaf
     construction: Construction
     place: str
     code: str = ""
-    template: str = ""
-    obstacle: str = ""
+    fixed: tuple[str, ...] = ()
+    passed: dict[str, str] = field(default_factory=dict)
     states: int = 0
     variables: dict[str, int] = field(default_factory=dict)
 
@@ -132,27 +134,28 @@ class StateTypes:
     def of(self, leaf: Leaf, construction: Construction) -> tuple[str, dict[str, list[Argument]]]:
         """The name of the state type of a state, and the variables of the state. A variable with
         several arguments is a list of them."""
-        variables, listed = _variables(construction)
+        if construction.node:
+            construction = replace(construction, obstacle="it needs the node of ROS 2")
+        wrapped = _is_wrapped(construction)
+        fixed, variables, passed = _split(construction, leaf, wrapped=wrapped)
+        obstacle = construction.obstacle
         which = (
-            construction.cls, construction.library, construction.short, construction.file,
-            construction.obstacle, listed, leaf.open,
-            outcome_names(leaf), tuple((key.name, is_optional(key)) for key in leaf.inputs),
+            construction.cls, construction.library, construction.file, fixed, tuple(passed),
+            obstacle and construction.short, obstacle, leaf.open, outcome_names(leaf),
+            tuple((key.name, is_optional(key)) for key in leaf.inputs),
             tuple(key.name for key in leaf.outputs),
-            construction.span if construction.obstacle and not construction.file else None,
+            construction.span if obstacle and not construction.file else None,
         )  # fmt: skip
         if which not in self.known:
-            name = self._name(construction.short or leaf.name)
-            made = ImportedType(
-                name=name, leaf=leaf, construction=construction, obstacle=construction.obstacle,
+            cls = construction.cls
+            self.known[which] = ImportedType(
+                name=self._name(construction.short or leaf.name), leaf=leaf,
+                construction=construction, fixed=fixed, passed=passed,
                 place=self.place(construction.cls_span or construction.span),
+                code=f"{cls.module}:{cls.name}" if cls is not None and not wrapped else "",
             )  # fmt: skip
-            if not construction.obstacle:
-                _set_code(made, variables, listed=listed)
-            self.known[which] = made
         found = self.known[which]
         found.states += 1
-        if found.obstacle:
-            return found.name, {}
         for name in variables:
             found.variables[name] = found.variables.get(name, 0) + 1
         return found.name, variables
@@ -167,69 +170,53 @@ class StateTypes:
         return name
 
     def files(self) -> dict[str, str]:
-        """The interfaces and templates of the state types, and the module of the classes that are
-        to be written."""
-        files: dict[str, str] = {}
-        for made in self.known.values():
-            files[f"templates/{made.name}.yml"] = _interface(made)
-            if made.template:
-                files[f"templates/{made.name}.tpl.py"] = made.template
-        missing = [made for made in self.known.values() if made.obstacle]
-        if missing:
-            files[f"{TO_WRITE}.py"] = _to_write(missing)
+        """The interfaces of the state types, and the module with their classes."""
+        files = {f"templates/{made.name}.yml": _interface(made) for made in self.known.values()}
+        own = [made for made in self.known.values() if not made.code]
+        if own:
+            files[f"{OWN_MODULE}.py"] = _module(own)
         return files
 
 
-def _variables(construction: Construction) -> tuple[dict[str, list[Argument]], bool]:
-    """The variables of a state by name, and whether one of them lists all arguments that have no
-    name."""
-    found: dict[str, list[Argument]] = {}
-    library = bool(construction.library)
+def _is_wrapped(construction: Construction) -> bool:
+    """Whether the import writes a class for a state: there is none to name, an argument has only a
+    place, or a parameter is a word that a script has for itself."""
+    return (
+        construction.cls is None
+        or bool(construction.obstacle)
+        or any(argument.name in {"", *RESERVED} for argument in construction.arguments)
+    )
+
+
+def _split(
+    construction: Construction, leaf: Leaf, *, wrapped: bool
+) -> tuple[tuple[str, ...], dict[str, list[Argument]], dict[str, str]]:
+    """The arguments that a class of the import passes as they are, as code; the variables of the
+    state; and the parameter for which each variable is."""
+    if construction.obstacle:
+        return (), {}, {}
+    fixed: list[str] = []
+    variables: dict[str, list[Argument]] = {}
+    passed: dict[str, str] = {}
     listed = any(not argument.name for argument in construction.arguments)
     for argument in construction.arguments:
-        if library and argument.name in _INTERFACE:
+        name = argument.name
+        if construction.library and name in _INTERFACE:
             continue
-        if not argument.name:
-            found.setdefault("arguments", []).append(argument)
+        if not name:
+            variables.setdefault("arguments", []).append(argument)
+            passed["arguments"] = "*"
+        elif wrapped and not listed and isinstance(argument.data, Expression):
+            fixed.append(f"{name}={argument.data.text}")
         else:
-            found[variable_name(argument.name)] = [argument]
-    return found, listed
-
-
-def variable_name(parameter: str) -> str:
-    """The name of the variable for a parameter: a script has some words for itself."""
-    return f"{parameter}_argument" if parameter in RESERVED else parameter
-
-
-def _set_code(made: ImportedType, variables: Mapping[str, object], *, listed: bool) -> None:
-    """Sets the reference to the class, or the template."""
-    construction = made.construction
-    named = [argument.name for argument in construction.arguments if argument.name]
-    renamed = any(variable_name(name) != name for name in named)
-    if construction.cls is not None and not listed and not renamed:
-        made.code = f"{construction.cls.module}:{construction.cls.name}"
-        return
-    cls = construction.library
-    imports = ""
-    if construction.cls is not None:
-        cls = construction.cls.name
-        imports = f"from {construction.cls.module} import {cls}"
-    given = ["*arguments"] if listed else []
+            variable = f"{name}_argument" if name in RESERVED else name
+            variables[variable] = [argument]
+            passed[variable] = name
     if construction.library:
-        leaf = made.leaf
-        given += [f"{name}={variable_name(name)}" for name in dict.fromkeys(named)
-                  if name not in _INTERFACE]  # fmt: skip
-        given += [f"outcomes={[*outcome_names(leaf)]!r}"]
-        given += [f"{name}={[key.name for key in keys]!r}" for name, keys in
+        fixed.append(f"outcomes={[*outcome_names(leaf)]!r}")
+        fixed += [f"{name}={[key.name for key in keys]!r}" for name, keys in
                   (("input_keys", leaf.inputs), ("output_keys", leaf.outputs)) if keys]  # fmt: skip
-    else:
-        given += [f"{name}={variable_name(name)}" for name in dict.fromkeys(named)]
-    block = f"{{% block imports %}}\n{{{{ super() }}}}\n{imports}\n{{% endblock imports %}}\n"
-    made.template = (
-        f'{{% extends "State.tpl.py" %}}\n{block if imports else ""}'
-        f"{{% block body %}}\n{{{{ add({', '.join([quoted(cls), *given])}) }}}}\n"
-        f"{{% endblock body %}}\n"
-    )
+    return tuple(fixed), variables, passed
 
 
 def _interface(made: ImportedType) -> str:
@@ -248,41 +235,68 @@ def _interface(made: ImportedType) -> str:
         elif leaf.open:
             lines.append(f'{word}: {{"*": {{}}}}')
     lines.append(f"outcomes: {mapping_text(dict.fromkeys(outcome_names(leaf), '{}'))}")
-    code = made.code or f"{made.name}.tpl.py"
-    if made.obstacle:
-        code = f"{TO_WRITE}:{made.name}"
-    lines.append(f"code: {{python: {quoted(code)}}}")
+    lines.append(f"code: {{python: {quoted(made.code or f'{OWN_MODULE}:{made.name}')}}}")
     return "\n".join(lines) + "\n"
 
 
-def _to_write(missing: Iterable[ImportedType]) -> str:
-    """The module with a class for each state that could not be taken over."""
+def _module(types: Iterable[ImportedType]) -> str:
+    """The module with the classes of an import."""
+    bodies: list[str] = []
+    for made in types:
+        bodies += ["", "", *(_stub(made) if made.construction.obstacle else _wrapper(made))]
+    text = "\n".join(bodies)
+    libraries = ["smach", *(["smach_ros"] if "smach_ros." in text else [])]
+    modules = sorted({made.construction.cls.module for made in types
+                      if made.construction.cls is not None and not made.construction.obstacle}
+                     | _modules_in(types))  # fmt: skip
     lines = [
-        '"""The states that were not taken over: write `execute` of each."""', "",
-        "try:", "    import smach", "except ImportError:  # without SMACH",
-        "    from smachac.runtime import smach",
+        '"""Classes for the states of the scripts in this folder."""', "",
+        "try:", *(f"    import {name}" for name in libraries),
+        "except ImportError:  # without SMACH",
+        *(f"    from smachac.runtime import {name}" for name in libraries),
+        *([""] if modules else []), *(f"import {name}" for name in modules),
     ]  # fmt: skip
-    for made in missing:
-        leaf = made.leaf
-        lists = {
-            "outcomes": [*outcome_names(leaf)],
-            "input_keys": [key.name for key in leaf.inputs],
-            "output_keys": [key.name for key in leaf.outputs],
-        }
-        given = [f"            {name}={names!r}," for name, names in lists.items() if names]
-        why = re.sub(r'[\\"]', "'", f"{made.place}: {made.obstacle}.")
-        lines += [
-            "", "", f"class {made.name}(smach.State):", f'    """{why}"""', "",
-            "    def __init__(self):", "        super().__init__(", *given, "        )", "",
-            "    def execute(self, userdata):",
-            f"        raise NotImplementedError({made.place!r})",
-        ]  # fmt: skip
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, text]) + "\n"
 
 
-def code_of(argument: Argument) -> str:
-    """The code in an argument, or an empty text."""
-    return argument.data.text if isinstance(argument.data, Expression) else ""
+def _modules_in(types: Iterable[ImportedType]) -> set[str]:
+    """The modules in the code of fixed arguments."""
+    return {module for made in types for argument in made.construction.arguments
+            if made.fixed for module in argument.modules}  # fmt: skip
+
+
+def _wrapper(made: ImportedType) -> list[str]:
+    """A class that passes arguments to that of the user or of SMACH."""
+    cls = made.construction.cls
+    base = f"{cls.module}.{cls.name}" if cls is not None else made.construction.library
+    given = ["*arguments"] if "arguments" in made.passed else []
+    given += [f"{name}={variable}" for variable, name in made.passed.items() if name != "*"]
+    given += made.fixed
+    parameters = "".join(f", {name}" for name in made.passed)
+    lines = [f"class {made.name}({base}):", f'    """{made.place}"""', "",
+             f"    def __init__(self{parameters}):"]  # fmt: skip
+    if sum(map(len, given)) < 60:
+        return [*lines, f"        super().__init__({', '.join(given)})"]
+    return [*lines, "        super().__init__(", *(f"            {part}," for part in given),
+            "        )"]  # fmt: skip
+
+
+def _stub(made: ImportedType) -> list[str]:
+    """A class for a state whose code was not taken over."""
+    leaf = made.leaf
+    lists = {
+        "outcomes": [*outcome_names(leaf)],
+        "input_keys": [key.name for key in leaf.inputs],
+        "output_keys": [key.name for key in leaf.outputs],
+    }
+    given = [f"            {name}={names!r}," for name, names in lists.items() if names]
+    why = re.sub(r'[\\"]', "'", f"{made.place}: {made.construction.obstacle}.")
+    return [
+        f"class {made.name}(smach.State):", f'    """{why}"""', "",
+        "    def __init__(self):", "        super().__init__(", *given, "        )", "",
+        "    def execute(self, userdata):",
+        f"        raise NotImplementedError({made.place!r})",
+    ]  # fmt: skip
 
 
 def relative(path: str, folder: Path) -> str:

@@ -48,8 +48,8 @@ def data_text(data: Data, *, inside: bool = False) -> str:
             return "true" if data else "false"
         case int() | float():
             return repr(data)
-        case str():
-            return quoted(data) if inside else name_text(data)
+        case str():  # a word with a dot would be code
+            return quoted(data) if inside or "." in data else name_text(data)
         case Expression(text=code):
             return quoted(f"`{code}`")
         case Struct(entries=entries):

@@ -1,0 +1,380 @@
+"""The import of machines in Python: the files that it writes, its proof, and programs made of its
+scripts, which do what the machines in Python do."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from smachac.commands.cli import main
+from smachac.frontend.files import Disk
+from smachac.ir.nodes import Concurrence, Container, Key, Leaf, Node, Outcome, Preset
+from smachac.ir.nodes import Iterator as IteratorNode
+from smachac.python_machines import Built, PythonProject
+from smachac.refactor.equivalence import map_nodes
+from smachac.refactor.python_import.proof import differences
+from tests.conformance.standalone_smach import FOLDER
+from tests.support.examples import every
+from tests.support.golden import compare_folder
+from tests.support.import_runs import python3
+
+CASES = Path(__file__).parents[1] / "import_cases"
+MACHINES = {
+    "actions": "sm", "callbacks": "Waiter().machine", "concurrence": "sm", "functions": "build()",
+    "literal": "main()", "loop": "ring()", "modules": "main()", "python2": "@sm", "rare": "sm",
+    "subclass": "Tour(None)", "userdata": "sm", "variables": "sm",
+}  # fmt: skip
+"""The code that makes the machine of each case, as `import_runs.py` takes it."""
+
+RUNS = 200
+
+
+@pytest.fixture
+def case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], Path]:
+    """Copies the Python files of a case to a git repository, and makes it the current folder."""
+
+    def copied(name: str) -> Path:
+        folder = tmp_path / name
+        folder.mkdir()
+        for path in (CASES / name).glob("*.py"):
+            shutil.copy(path, folder)
+        (folder / ".git").mkdir()
+        monkeypatch.chdir(folder)
+        return folder
+
+    return copied
+
+
+def written(folder: Path) -> dict[str, str]:
+    """The files below a folder, as text."""
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes().decode()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_golden_project(
+    name: str, case: Callable[[str], Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = case(name)
+    code = main(["import", "machine.py", "-o", "project"])
+    out, err = capsys.readouterr()
+    output = {"output.txt": f"{out}{err}exit code {code}\n"}
+    compare_folder(written(folder / "project") | output, CASES / name / "expected")
+
+
+@pytest.mark.parametrize("runtime", ["bundled", "SMACH"])
+@pytest.mark.parametrize("name", every(3, list(MACHINES)))
+def test_the_program_of_the_script_runs_as_the_machine(
+    name: str, runtime: str, case: Callable[[str], Path]
+) -> None:
+    if runtime == "SMACH" and not FOLDER.exists():
+        pytest.skip("standalone-smach is not installed: scripts/setup.sh dev")
+    folder = case(name)
+    main(["import", "machine.py", "-o", "project", "-q"])
+    machine = folder / "machine.py"
+    machine.write_text(python3(machine), "utf-8")  # the code of a program has to be Python 3
+    assert main(["build", "project/main.yml", "--target", "python", "-o", "out", "-q"]) == 0
+    (program,) = (folder / "out").glob("*.py")
+    root = Path(__file__).parents[2]
+    paths = [folder, folder / "project", root, *([FOLDER] if runtime == "SMACH" else [])]
+    done = subprocess.run(
+        [sys.executable, root / "tests" / "support" / "import_runs.py", str(RUNS),
+         f"machine.py:{MACHINES[name]}", f"{program}:build()"],
+        capture_output=True, text=True, check=False,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(map(str, paths))},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert ("standalone-smach" in found["smach"]) is (runtime == "SMACH")
+    python, script = found["machines"]
+    assert script["structure"] == python["structure"]
+    assert script["runs"] == python["runs"]
+    assert not any("raised" in outcome for outcome, _ in python["runs"])
+
+
+# --- the proof
+
+
+def built(name: str) -> Built:
+    """The first machine of a case."""
+    machines: list[Built] = []
+    PythonProject(Disk()).read(CASES / name / "machine.py", built=machines)
+    return machines[0]
+
+
+def changed(state: str, change: Callable[[Any], Any]) -> Callable[[Node], Node]:
+    return lambda node: change(node) if node.name == state else node
+
+
+def first_edge(node: Node, **fields: object) -> Node:
+    step, *others = node.transitions
+    return replace(node, transitions=(replace(step, **fields), *others))  # type: ignore[arg-type]
+
+
+def span(node: Node) -> Any:
+    return node.span
+
+
+CHANGES: dict[str, tuple[str, str, Callable[[Any], Any]]] = {
+    "target": ("literal", "DOCK", lambda node: first_edge(node, target="lost")),
+    "outcome of a transition": ("literal", "DOCK", lambda node: first_edge(node, outcome="gone")),
+    "no transition": ("literal", "CHARGE", lambda node: replace(node, transitions=())),
+    "outcome": ("literal", "CHARGE", lambda node: replace(node, outcomes=(
+        *node.outcomes, Outcome(name="more", span=span(node))))),
+    "input key": ("userdata", "SORT", lambda node: replace(node, inputs=())),
+    "optional key": ("userdata", "WEIGH", lambda node: replace(node, inputs=tuple(
+        Key(name=key.name, span=key.span) for key in node.inputs))),
+    "output key": ("userdata", "WEIGH", lambda node: replace(node, outputs=())),
+    "remapping": ("userdata", "WEIGH", lambda node: replace(node, remaps=())),
+    "userdata": ("userdata", "sm", lambda node: replace(node, userdata=())),
+    "name of a state": ("literal", "DOCK", lambda node: replace(node, name="DOKC")),
+    "first state": ("literal", "sm", lambda node: replace(node, initial="CHARGE")),
+    "no state": ("functions", "FETCH", lambda node: replace(node, children=node.children[:1])),
+    "join": ("concurrence", "EITHER", lambda node: replace(node, join="all")),
+    "rule": ("concurrence", "BOTH", lambda node: replace(node, rules=())),
+    "default outcome": ("concurrence", "BOTH",
+                        lambda node: replace(node, default_outcome="prepared")),
+    "loop outcomes": ("rare", "PACK", lambda node: replace(node, loop_outcomes=("halted",))),
+    "item": ("rare", "PACK", lambda node: replace(node, item_key="thing")),
+    "connector": ("rare", "BOX", lambda node: replace(node, connector_outcome="halted")),
+    "kind": ("functions", "FETCH", lambda node: Leaf(
+        name=node.name, type="x", outcomes=node.outcomes, transitions=node.transitions,
+        span=node.span)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_the_proof_finds_each_difference(name: str) -> None:
+    where, state, change = CHANGES[name]
+    graph, constructions = built(where)
+    root: Any = graph.machine.root
+    if where == "concurrence":  # its callback is decided by rules in a script
+        constructions = replace(constructions, callbacks={})
+    assert differences(root, root, constructions) == []
+    other: Any = map_nodes(root, changed(state, change))
+    assert other != root
+    assert differences(root, other, constructions) != []
+
+
+def test_the_machines_of_the_proof_have_all_kinds() -> None:
+    kinds = {type(node) for name in ("concurrence", "rare")
+             for node in built(name)[0].machine.root.children}  # fmt: skip
+    assert {Concurrence, IteratorNode} < kinds
+    assert all(issubclass(kind, Container | Leaf) for kind in kinds)
+    assert Preset
+
+
+# --- twice, and over other files
+
+
+def test_importing_twice_gives_the_same_bytes(
+    case: Callable[[str], Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = case("subclass")
+    assert main(["import", "machine.py", "-o", "one"]) == 0
+    assert main(["import", "machine.py", "-o", "two"]) == 0
+    assert written(folder / "one") == written(folder / "two")
+    capsys.readouterr()
+    assert main(["import", "machine.py", "-o", "one"]) == 0
+    assert "one is up to date\n" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", ["main.yml", "Visit.yml", "templates/Wait.yml", "smachac.toml"])
+def test_an_edited_project_is_not_overwritten(
+    name: str, case: Callable[[str], Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = case("subclass")
+    main(["import", "machine.py", "-o", "project"])
+    path = folder / "project" / name
+    path.write_text(path.read_text("utf-8") + "# mine\n", "utf-8")
+    machine = folder / "machine.py"
+    machine.write_text(machine.read_text("utf-8").replace("Wait(2)", "Wait(7)"), "utf-8")
+    before = written(folder / "project")
+    capsys.readouterr()
+    assert main(["import", "machine.py", "-o", "project"]) == 1
+    assert written(folder / "project") == before
+    assert f"error: project/{name} was edited" in capsys.readouterr().err
+
+
+def test_a_project_that_was_not_edited_follows_the_machine(case: Callable[[str], Path]) -> None:
+    folder = case("subclass")
+    main(["import", "machine.py", "-o", "project"])
+    machine = folder / "machine.py"
+    machine.write_text(machine.read_text("utf-8").replace("Wait(2)", "Wait(7)"), "utf-8")
+    assert main(["import", "machine.py", "-o", "project"]) == 0
+    assert "seconds: 7" in (folder / "project/Visit.yml").read_text("utf-8")
+
+
+@pytest.mark.parametrize("kind", ["file", "link", "folder"])
+def test_files_of_others_are_not_touched(
+    kind: str, case: Callable[[str], Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = case("literal")
+    (folder / "project").mkdir()
+    other = folder / "project" / "main.yml"
+    match kind:
+        case "file":
+            other.write_text("name: mine\n", "utf-8")
+        case "link":
+            (folder / "mine.yml").write_text("name: mine\n", "utf-8")
+            other.symlink_to(folder / "mine.yml")
+        case "folder":
+            other.mkdir()
+    before = written(folder)
+    assert main(["import", "machine.py", "-o", "project"]) == 1
+    assert written(folder) == before
+    assert "project/main.yml" in capsys.readouterr().err
+
+
+# --- what cannot be imported
+
+
+REFUSED = {
+    "syntax error": ("import smach\nsm = smach.StateMachine(outcomes=['a'\n", "SM805"),
+    "no machine": ("print('hello')\n", "no state machine found in machine.py"),
+    "no state": (
+        "import smach\nsm = smach.StateMachine(outcomes=['a'])\nsm.execute()\n",
+        "machine.py:2:6: `sm` has no states",
+    ),
+    "unknown name": (
+        "import smach, rospy\nsm = smach.StateMachine(outcomes=['a'])\nwith sm:\n"
+        "    sm.add(rospy.get_name(), smach.State(outcomes=['a']))\n",
+        "machine.py:4:5: its name is not known",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_refused_files(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text, words = REFUSED[name]
+    Path("machine.py").write_text(text, "utf-8")
+    assert main(["import", "machine.py", "-o", "project"]) == 1
+    err = capsys.readouterr().err
+    assert words in err
+    assert "help:" in err
+    assert not Path("project").exists()
+
+
+@pytest.mark.parametrize(("arguments", "words"), [
+    (["main.yml"], "main.yml is no Python file"),
+    (["machine.py", "--machine", "Toru"], "machine.py has no machine `Toru`\ndid you mean `Tour`?"),
+])  # fmt: skip
+def test_wrong_usage(
+    arguments: list[str], words: str, case: Callable[[str], Path],
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    case("subclass")
+    assert main(["import", *arguments]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_an_output_that_is_no_folder(
+    case: Callable[[str], Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = case("literal")
+    (folder / "project").write_text("mine", "utf-8")
+    assert main(["import", "machine.py", "-o", "project"]) == 1
+    assert "project is no folder" in capsys.readouterr().err
+    assert (folder / "project").read_text("utf-8") == "mine"
+
+
+def test_without_a_git_repository_the_folder_of_the_module_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(CASES / "literal" / "machine.py", tmp_path)
+    assert main(["import", "machine.py", "-o", "project"]) == 0
+    assert "help: set PYTHONPATH=. for the programs" in capsys.readouterr().out
+    assert "code" not in (tmp_path / "project/smachac.toml").read_text("utf-8")
+
+
+ODD_NAMES = ["on", "a: b", "1", "#x", "null", "Grüße", "\U0001f600", "- x", "it's", '"', "`x`"]
+
+
+def test_odd_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    lines = [
+        "import smach", "class Odd(smach.State):", "    def __init__(self):",
+        "        smach.State.__init__(self, outcomes=['~', 'yes'])",
+        "    def execute(self, userdata):", "        return 'yes'",
+        "sm = smach.StateMachine(outcomes=['no'])", "with sm:",
+    ]  # fmt: skip
+    for name, target in zip(ODD_NAMES, [*ODD_NAMES[1:], "no"], strict=True):
+        lines += [f"    sm.add({name!r}, Odd(), {{'~': {target!r}, 'yes': 'no'}})"]
+    Path("machine.py").write_text("\n".join(lines) + "\n", "utf-8")
+    assert main(["import", "machine.py", "-o", "project"]) == 0
+    assert main(["build", "project/main.yml", "--target", "python", "-o", "out", "-q"]) == 0
+
+
+def test_a_name_that_no_script_can_have_is_reported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("machine.py").write_text(
+        "import smach\nsm = smach.StateMachine(outcomes=['a'])\nwith sm:\n"
+        "    sm.add('A/B', smach.State(outcomes=['a']))\n",
+        "utf-8",
+    )
+    main(["import", "machine.py", "-o", "project"])
+    assert "error[SM107]: 'A/B' is not a valid name of a state" in capsys.readouterr().err
+
+
+ARGUMENTS = [
+    "1", "-2.5", "1e300", "True", "None", "'a.b'", "'`x`'", "'params'", "['params', 'x']",
+    "[['x']]", "{'a': [1, None]}", "{1: 2}", "(1, 'a')", "()", "{1, 2}", "b'x'", "1j",
+    "float('inf')", "'line\\nbreak'", "lambda x: x", "LIMITS", "LIMITS[0] + 1", "print",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("text", ARGUMENTS)
+def test_arguments_arrive_as_they_were(
+    text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / ".git").mkdir()
+    Path("given_states.py").write_text(
+        "import smach\nLIMITS = object, 2\nLIMITS = [2, 3]\nclass Given(smach.State):\n"
+        "    def __init__(self, value, t=None):\n"
+        "        smach.State.__init__(self, outcomes=['a'])\n        self.value = value\n"
+        "        self.t = t\n    def execute(self, userdata):\n        return 'a'\n"
+        "def build():\n    sm = smach.StateMachine(outcomes=['a'])\n    with sm:\n"
+        f"        sm.add('A', Given({text}), {{'a': 'B'}})\n"
+        f"        sm.add('B', Given({text}, t=1))\n    return sm\n",
+        "utf-8",
+    )
+    assert main(["import", "given_states.py", "-o", "project", "-q"]) == 0
+    assert main(["build", "project/main.yml", "--target", "python", "-o", "out", "-q"]) == 0
+    code = (
+        "import sys; from smachac.runtime import smach; sys.modules['smach'] = smach\n"
+        "import given_states, importlib, pathlib\n"
+        "name = next(pathlib.Path('out').glob('*.py')).stem\n"
+        "found = importlib.import_module(name).build().get_children()\n"
+        "wanted = given_states.build().get_children()\n"
+        "for name in 'AB':\n"
+        "    one, other = found[name].value, wanted[name].value\n"
+        "    assert type(one) is type(other), (one, other)\n"
+        "    assert callable(one) or one == other, (one, other)\n"
+        "    assert found[name].t == wanted[name].t\n"
+    )
+    root = Path(__file__).parents[2]
+    paths = os.pathsep.join(map(str, (tmp_path, tmp_path / "project", tmp_path / "out", root)))
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False,
+        env={**os.environ, "PYTHONPATH": paths},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
