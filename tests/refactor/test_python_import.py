@@ -19,12 +19,15 @@ from smachac.commands.cli import main
 from smachac.frontend.files import Disk
 from smachac.ir.nodes import Concurrence, Container, Key, Leaf, Node, Outcome, Preset
 from smachac.ir.nodes import Iterator as IteratorNode
+from smachac.pysource.machines import evaluator
 from smachac.python_machines import Built, PythonProject
 from smachac.refactor.equivalence import map_nodes
 from smachac.refactor.python_import.proof import differences
 from tests.conformance.standalone_smach import FOLDER
+from tests.pysource.machines.test_no_execution import CODE, MACHINE
 from tests.support.examples import every
 from tests.support.golden import compare_folder
+from tests.support.hostile_python import HOSTILE
 from tests.support.import_runs import python3
 
 CASES = Path(__file__).parents[1] / "import_cases"
@@ -301,6 +304,28 @@ def test_without_a_git_repository_the_folder_of_the_module_is_named(
     assert main(["import", "machine.py", "-o", "project"]) == 0
     assert "help: set PYTHONPATH=. for the programs" in capsys.readouterr().out
     assert "code" not in (tmp_path / "project/smachac.toml").read_text("utf-8")
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_hostile_files(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(evaluator, "MOST_STEPS", 20_000)
+    monkeypatch.chdir(tmp_path)
+    Path("machine.py").write_text(HOSTILE[name], "utf-8")
+    assert main(["import", "machine.py", "-o", "project", "-q"]) in (0, 1)
+
+
+@pytest.mark.parametrize("name", CODE)
+def test_no_code_is_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    trace = tmp_path / "trace"
+    mark = f'open("{trace}", "w")'
+    code = CODE[name].format(mark=mark, file=f'"{trace}"')
+    Path("machine.py").write_text(f"import smach\n{code}\n{MACHINE}", "utf-8")
+    Path("other.py").write_text(f"import smach\n{mark}\n", "utf-8")
+    Path("smach.py").write_text(f"{mark}\n", "utf-8")
+    main(["import", "machine.py", "-o", "project", "-q"])
+    assert Path("project/main.yml").exists()
+    assert not trace.exists()
 
 
 ODD_NAMES = ["on", "a: b", "1", "#x", "null", "Grüße", "\U0001f600", "- x", "it's", '"', "`x`"]

@@ -415,53 +415,45 @@ class _Reader:
         """The items of an iterator; those that a function without parameters returns."""
         value = made.slots.get("$it") or Unknown()
         if isinstance(value, Function | Method):
-            value = self._called(value, Arguments()) or Unknown()
+            value = self.evaluator.tried(value, Arguments()) or Unknown()
         items = sequence(value)
         if items is not None:
             value = ListValue({"items": items})
         return self._without_code("it", value, span)
 
-    def _called(self, function: Value, arguments: Arguments) -> Value | None:
-        """The result of a call, whose changes are undone; None if it takes too long."""
-        mark = self.evaluator.heap.mark()
-        try:
-            found = self.evaluator.call(function, arguments, None, _frame_of(function))
-        except (BudgetError, RecursionError):
-            self.evaluator.reset()
-            return None
-        self.evaluator.heap.undo(mark)
-        self.evaluator.heap.release(mark)
-        return found
-
     def _callbacks(self, node: Concurrence, made: Instance) -> Callbacks:
-        states = [(child.name, outcome_names(child)) for child in written_children(node)]
         lost: list[tuple[str, Span]] = []
         ending = made.slots.get("$child_termination_cb")
-        if not _is_nothing(ending) and truth(self._called(ending, Arguments((Unknown(),)))
-                                             or Unknown()) is None:  # fmt: skip
-            lost.append(("child_termination_cb", made.span or node.span))
+        if ending is not None and not _is_nothing(ending):
+            found = self.evaluator.tried(ending, Arguments((Unknown(),)))
+            if found is None or truth(found) is None:
+                lost.append(("child_termination_cb", made.span or node.span))
         selecting = made.slots.get("$outcome_cb")
-        if _is_nothing(selecting):
-            return Callbacks(lost=tuple(lost))
-        count = math.prod(len(outcomes) for _, outcomes in states)
-        decided = {} if count <= MOST_COMBINATIONS else None
-        for chosen in itertools.product(*(outcomes for _, outcomes in states)):
+        decided = None
+        if selecting is not None and not _is_nothing(selecting):
+            decided = self._decided(node, selecting)
             if decided is None:
-                break
-            pairs = tuple(zip((name for name, _ in states), chosen, strict=True))
-            outcome = self._selected(node, selecting, pairs)
-            if outcome is None:
-                decided = None
-            else:
-                decided[pairs] = outcome
-        if decided is None:
-            lost.append(("outcome_cb", made.span or node.span))
+                lost.append(("outcome_cb", made.span or node.span))
         return Callbacks(decided=decided, lost=tuple(lost))
+
+    def _decided(self, node: Concurrence, function: Value) -> dict[Outcomes, str] | None:
+        """The outcomes that a function selects, by those of the states; None: not known."""
+        cases = [[(child.name, outcome) for outcome in outcome_names(child)]
+                 for child in written_children(node)]  # fmt: skip
+        if math.prod(map(len, cases)) > MOST_COMBINATIONS:
+            return None
+        decided: dict[Outcomes, str] = {}
+        for case in itertools.product(*cases):
+            outcome = self._selected(node, function, case)
+            if outcome is None:
+                return None
+            decided[case] = outcome
+        return decided
 
     def _selected(self, node: Concurrence, function: Value, pairs: Outcomes) -> str | None:
         """The outcome of a concurrence with `outcome_cb`; None if it is not known."""
         items = {name: (Const(name), Const(outcome)) for name, outcome in pairs}
-        found = self._called(function, Arguments((DictValue({"items": items}),)))
+        found = self.evaluator.tried(function, Arguments((DictValue({"items": items}),)))
         if not isinstance(found, Const):
             return None
         if found.value:
@@ -638,13 +630,6 @@ def _short(callback: Argument | None, cls: str) -> str:
     if not name.isidentifier():
         return cls
     return "".join(part[:1].upper() + part[1:] for part in name.split("_")) or cls
-
-
-def _frame_of(function: Value) -> Frame:
-    inner = function.function if isinstance(function, Method) else function
-    if isinstance(inner, Function):
-        return inner.frame
-    return Frame({}, ModuleValue("", {}))
 
 
 def _is_nothing(value: Value | None) -> bool:

@@ -217,6 +217,26 @@ class Evaluator:
             frame.module.faults = self.faults
             self.opened, self.regions, self.unsure, self.faults = around
 
+    def tried(self, function: Value, arguments: Arguments) -> Value | None:
+        """The result of a call, all changes of which are undone; None if it takes too long."""
+        around = self.opened, self.regions, self.calls, self.unsure, self.tries
+        others = [*self.heap.others]
+
+        def called() -> Value | None:
+            try:
+                return self.call(function, arguments, None, Frame({}, ModuleValue("", {})))
+            except (BudgetError, RecursionError):
+                return None
+            finally:
+                self.heap.undo(0)
+
+        self.opened, self.regions, self.calls, self.unsure, self.tries = [], [], [], 0, 0
+        try:
+            return self.heap.apart(called)
+        finally:
+            self.opened, self.regions, self.calls, self.unsure, self.tries = around
+            self.heap.others[:] = others
+
     def begin(self) -> None:
         """Begins the evaluation of a file, with all steps left. What the code of the one before
         has changed in modules that both import is undone."""

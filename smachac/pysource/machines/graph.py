@@ -43,6 +43,7 @@ from smachac.pysource.machines.roots import Roots
 from smachac.pysource.machines.state_comments import StateComments
 from smachac.pysource.machines.values import (
     UNKNOWN,
+    Arguments,
     Class,
     Const,
     DictValue,
@@ -291,10 +292,11 @@ class _Builder:
         function = callback.function if isinstance(callback, Method) else callback
         if callback is None or _is_none(callback):
             return "all"
-        if isinstance(function, Function) and not isinstance(function.node, _DEFINITIONS):
-            found = self.evaluator.value(function.node.body, function.frame)
+        found = self.evaluator.tried(callback, Arguments((UNKNOWN,))) or UNKNOWN
+        if truth(found) is not None:
             return "any" if truth(found) else "all"
-        return "any"
+        is_short = isinstance(function, Function) and not isinstance(function.node, _DEFINITIONS)
+        return "all" if is_short else "any"
 
     def _iterator(
         self, made: Instance, common: dict[str, Any], built: tuple[Node, ...],

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import hashlib
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from smachac.diagnostics.diagnostic import Report, Severity
@@ -83,8 +83,8 @@ def import_python(path: Path, folder: Path, disk: Disk, wanted: str | None = Non
     built: list[Built] = []
     file = PythonProject(disk).read(path, built=built)
     machines, incomplete = _machines(built)
-    all_names = [machine.name for machine in (*machines, *incomplete)]
-    machines = [machine for machine in machines if wanted in (None, machine.name)]
+    all_names = [*(machine.label for machine in machines), *(one.name for one in incomplete)]
+    machines = [machine for machine in machines if wanted in (None, machine.label)]
     incomplete = [machine for machine in incomplete if wanted in (None, machine.name)]
     names = [machine.name for machine in (*machines, *incomplete)]
     if not machines:
@@ -109,21 +109,30 @@ def _machines(built: Sequence[Built]) -> tuple[list[PythonMachine], list[Incompl
     """The machines that are known as a whole, and the others."""
     machines: list[PythonMachine] = []
     incomplete: list[Incomplete] = []
-    taken: set[str] = {"main", OWN_MODULE}
-    for _, constructions in built:
-        taken |= {module.partition(".")[0].casefold() for module in constructions.modules}
+    modules = {module for _, constructions in built for module in constructions.modules}
+    taken = {"main", OWN_MODULE, *(name.partition(".")[0].casefold() for name in modules)}
+    labels: set[str] = set()
     for graph, constructions in built:
-        own = re.sub(r"\W+", "_", graph.machine.root.name) or "sm"
-        name, number = own, 2
-        while name.casefold() in taken:
-            name, number = f"{own}_{number}", number + 1
+        root = graph.machine.root
+        label = _free(root.name, labels)
+        labels.add(label.casefold())
+        if not _is_known(graph):
+            incomplete.append(Incomplete(name=label, unknown=_unknown(graph)))
+            continue
+        name = _free(re.sub(r"\W+", "_", root.name) or "sm", taken)
         taken.add(name.casefold())
-        if _is_known(graph):
-            root = graph.machine.root
-            machines.append(PythonMachine(name=name, root=root, constructions=constructions))
-        else:
-            incomplete.append(Incomplete(name=name, unknown=_unknown(graph)))
+        machines.append(
+            PythonMachine(name=name, label=label, root=root, constructions=constructions)
+        )
     return machines, incomplete
+
+
+def _free(word: str, taken: Collection[str]) -> str:
+    """A name that is not taken: the word, or one with a number."""
+    name, number = word, 2
+    while name.casefold() in taken:
+        name, number = f"{word}_{number}", number + 1
+    return name
 
 
 def _is_known(graph: Graph) -> bool:
@@ -297,5 +306,3 @@ def is_unedited(text: str) -> bool:
         return False
     rest = text[found.end() :]
     return hashlib.sha256(rest.encode("utf-8", "surrogatepass")).hexdigest()[:16] == found[1]
-
-

@@ -58,9 +58,11 @@ class Lost:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PythonMachine:
-    """A machine to import: its name, which is that of its script, and how its states are made."""
+    """A machine to import: its name in the script, that for `--machine`, and how its states are
+    made."""
 
     name: str
+    label: str
     root: StateMachine
     constructions: Constructions
 
@@ -396,9 +398,7 @@ Rules = list[tuple[str, list[tuple[str, str]]]]
 """Rules of a concurrence: an outcome, and the states with theirs."""
 
 
-def decided_rules(
-    decided: Mapping[Outcomes, str], default: str
-) -> tuple[str, Rules] | None:
+def decided_rules(decided: Mapping[Outcomes, str], default: str) -> tuple[str, Rules] | None:
     """A default outcome and rules that select what a function selects; None if there are none with
     one rule for each outcome. The declared default is preferred."""
     for other in dict.fromkeys([default, *decided.values()]):
@@ -428,10 +428,12 @@ def selected(rules: Rules, default: str, pairs: Outcomes) -> str | None:
 
 def _rules_text(rules: Rules) -> str:
     """The outcome map."""
-    return mapping_text({
-        outcome: mapping_text({child: name_text(name) for child, name in when})
-        for outcome, when in rules
-    })
+    return mapping_text(
+        {
+            outcome: mapping_text({child: name_text(name) for child, name in when})
+            for outcome, when in rules
+        }
+    )
 
 
 def settings(folders: Iterable[str], ros: int) -> str:
@@ -458,5 +460,3 @@ def state_count(root: Container) -> tuple[int, int]:
             transitions += len(child.transitions)
             stack.append(child)
     return states, transitions
-
-

@@ -245,17 +245,19 @@ def _module(types: Iterable[ImportedType]) -> str:
     for made in types:
         bodies += ["", "", *(_stub(made) if made.construction.obstacle else _wrapper(made))]
     text = "\n".join(bodies)
-    libraries = ["smach", *(["smach_ros"] if "smach_ros." in text else [])]
+    libraries = [name for name in ("smach", "smach_ros") if f"({name}." in text]
     modules = sorted({made.construction.cls.module for made in types
                       if made.construction.cls is not None and not made.construction.obstacle}
                      | _modules_in(types))  # fmt: skip
-    lines = [
-        '"""Classes for the states of the scripts in this folder."""', "",
-        "try:", *(f"    import {name}" for name in libraries),
-        "except ImportError:  # without SMACH",
-        *(f"    from smachac.runtime import {name}" for name in libraries),
-        *([""] if modules else []), *(f"import {name}" for name in modules),
-    ]  # fmt: skip
+    lines = ['"""Classes for the states of the scripts in this folder."""']
+    if libraries:
+        lines += [
+            "", "try:", *(f"    import {name}" for name in libraries),
+            "except ImportError:  # without SMACH",
+            *(f"    from smachac.runtime import {name}" for name in libraries),
+        ]  # fmt: skip
+    if modules:
+        lines += ["", *(f"import {name}" for name in modules)]
     return "\n".join([*lines, text]) + "\n"
 
 

@@ -1,11 +1,9 @@
-# Imported from machine.py by smachac; the lines below have the sha256 c3b7c770dd0a1f0a.
+# Imported from machine.py by smachac; the lines below have the sha256 7bbcd73e9f147de3.
 """Classes for the states of the scripts in this folder."""
 
 try:
-    import smach
     import smach_ros
 except ImportError:  # without SMACH
-    from smachac.runtime import smach
     from smachac.runtime import smach_ros
 
 import machine

@@ -1,10 +1,5 @@
-# Imported from machine.py by smachac; the lines below have the sha256 57d2649b9c56d655.
+# Imported from machine.py by smachac; the lines below have the sha256 05e25da359dd5203.
 """Classes for the states of the scripts in this folder."""
-
-try:
-    import smach
-except ImportError:  # without SMACH
-    from smachac.runtime import smach
 
 import voice_of_vendor
 

@@ -1,10 +1,5 @@
-# Imported from machine.py by smachac; the lines below have the sha256 ccd9e940b0333756.
+# Imported from machine.py by smachac; the lines below have the sha256 b435d8a6b1a8b009.
 """Classes for the states of the scripts in this folder."""
-
-try:
-    import smach
-except ImportError:  # without SMACH
-    from smachac.runtime import smach
 
 import machine
 

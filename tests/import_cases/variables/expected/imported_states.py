@@ -1,10 +1,5 @@
-# Imported from machine.py by smachac; the lines below have the sha256 457040b93edfac5d.
+# Imported from machine.py by smachac; the lines below have the sha256 ed6e213ea99e86dc.
 """Classes for the states of the scripts in this folder."""
-
-try:
-    import smach
-except ImportError:  # without SMACH
-    from smachac.runtime import smach
 
 import machine
 
