@@ -12,7 +12,8 @@ import copy
 import itertools
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import PurePath
 from typing import TypeAlias
 
@@ -22,6 +23,7 @@ from smachac.ir.nodes import Iterator as IteratorNode
 from smachac.ir.traversal import outcome_names, written_children
 from smachac.pysource.machines.evaluator import BudgetError, Evaluator
 from smachac.pysource.machines.graph import Graph
+from smachac.pysource.machines.origins import Origins
 from smachac.pysource.machines.project import Repository
 from smachac.pysource.machines.smach_library import parameters_of, takes_node
 from smachac.pysource.machines.values import (
@@ -54,7 +56,8 @@ class Argument:
     """An argument of a call. `name` is empty for one that only has a place. `data` is its value,
     with code where YAML has no such value; None with `is_known` False: not known, `text` is its
     code. `parameter`: the parameter of the container class around it whose value it is. `modules`
-    are those that code in it names."""
+    are those that code in it names. `source` identifies a value that is not known, `word` is a
+    name for it."""
 
     name: str
     data: Data
@@ -62,6 +65,8 @@ class Argument:
     is_known: bool = True
     parameter: str = ""
     modules: tuple[str, ...] = ()
+    source: Hashable = None
+    word: str = ""
     span: Span = field(compare=False)
 
 
@@ -135,6 +140,8 @@ class _Reader:
         self.evaluator = evaluator
         self.repository = repository
         self.modules: dict[str, str] = {}
+        self.origins = Origins()
+        self.names: Names = ()
 
     def read(self) -> Constructions:
         states: dict[Names, Construction] = {}
@@ -142,6 +149,7 @@ class _Reader:
         items: dict[Names, Argument] = {}
         callbacks: dict[Names, Callbacks] = {}
         for names, node in with_names(self.graph.machine.root):
+            self.names = names
             made = self.graph.objects.get(names)
             around = self._class_around(names[:-1])
             if isinstance(node, Leaf):
@@ -325,20 +333,30 @@ class _Reader:
         parameter = self._parameter(value, node, frame, around)
         data = _plain(value, span)
         code = self._code(value, node, frame) if data is UNWRITTEN else None
-        return _argument(name, data, code, text, parameter, span)
+        found = _argument(name, data, code, text, parameter, span)
+        if found.is_known:
+            return found
+        if node is None:
+            return replace(found, source=(span, name), word=name)
+        source, first = self.origins.source(node, frame, (self.names, name))
+        word = getattr(first, "id", "") or getattr(first, "attr", "") or name
+        return replace(found, source=source, word=word)
 
     def _parameter(
         self, value: Value, node: ast.expr | None, frame: Frame, around: Instance | None
     ) -> str:
         """The parameter of the constructor of a container that an argument is."""
-        if not isinstance(node, ast.Name) or around is None or frame.me is not around:
+        if node is None or around is None or around.made_by is None:
             return ""
-        if frame.function is not self._maker(around) or around.made_by is None:
-            return ""
+        maker = self._maker(around)
         given = around.made_by.arguments
         names = self._parameters(around)
         bound = dict(zip(names, given.positional, strict=False)) | dict(given.named)
-        return node.id if bound.get(node.id) is value else ""
+        for here in self.origins.of(node, frame):
+            found = self.origins.parameter(here)
+            if found is not None and found.me is around and found.function is maker:
+                return found.name if bound.get(found.name) is value else ""
+        return ""
 
     def _code(
         self, value: Value, node: ast.expr | None, frame: Frame
@@ -409,7 +427,8 @@ class _Reader:
         data, code = _plain(value, span), None
         if data is UNWRITTEN and isinstance(value, Function | Class):
             code = self._code(value, None, value.frame)
-        return _argument(name, data, code, name, "", span)
+        found = _argument(name, data, code, name, "", span)
+        return found if found.is_known else replace(found, source=(span, name), word=name)
 
     def _items(self, made: Instance, around: Instance | None, span: Span) -> Argument:
         """The items of an iterator; those that a function without parameters returns."""
@@ -574,7 +593,9 @@ def _literal(name: str, node: ast.expr, span: Span) -> Argument:
     try:
         value = ast.literal_eval(node)
     except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError):
-        return Argument(name=name, data=None, text=text, is_known=False, span=span)
+        word = getattr(node, "id", "") or getattr(node, "attr", "") or name
+        return Argument(name=name, data=None, text=text, is_known=False, source=span,
+                        word=word or "value", span=span)  # fmt: skip
     if value is None or (isinstance(value, bool | int | str) and not str(value).startswith("`")):
         return Argument(name=name, data=value, text=text, span=span)
     return Argument(name=name, data=Expression(text=repr(value), span=span), text=text, span=span)

@@ -1381,7 +1381,7 @@ class Evaluator:
             case Partial(function=inner, arguments=before):
                 return self.call(inner, before.followed_by(arguments), node, frame)
             case Function():
-                return self.run(function, arguments)
+                return self.run(function, arguments, Creation(node, frame, arguments))
             case Class() | LibraryClass():
                 return self.make(function, arguments, span, frame, node)
             case Instance():
@@ -1435,7 +1435,9 @@ class Evaluator:
                 self.steps += len(contents) // 4 if isinstance(contents, tuple | Mapping) else 0
         return value
 
-    def run(self, function: Function, arguments: Arguments) -> Value:
+    def run(
+        self, function: Function, arguments: Arguments, made_by: Creation | None = None
+    ) -> Value:
         """The result of a call of a function of the project."""
         node = function.node
         self.called.add(node)
@@ -1449,7 +1451,7 @@ class Evaluator:
             return UNKNOWN
         slots = self._parameters(function, arguments)
         me = arguments.positional[0] if arguments.positional else None
-        frame = Frame(slots, function.frame.module, function.frame, function, me)
+        frame = Frame(slots, function.frame.module, function.frame, function, me, made_by=made_by)
         self.calls.append((function, self.adds))
         try:
             if isinstance(node, ast.Lambda):
@@ -1514,7 +1516,7 @@ class Evaluator:
             return UNKNOWN
         maker = self._search(order, "__init__", made)
         if isinstance(maker, Method):
-            self.call(maker, arguments, None, frame)
+            self.call(maker, arguments, node, frame)
         return made
 
     def _member(self, cls: Class, arguments: Arguments) -> Value:

@@ -128,7 +128,8 @@ class DictValue:
 
 @dataclass(eq=False, slots=True)
 class Frame:
-    """The names of a function, a class or a module, and the frame around it."""
+    """The names of a function, a class or a module, and the frame around it. `made_by` is the call
+    of the function."""
 
     slots: Slots
     module: ModuleValue
@@ -138,6 +139,7 @@ class Frame:
     global_names: frozenset[str] = frozenset()
     outer_names: frozenset[str] = frozenset()
     kind: Literal["", "class", "comprehension"] = ""
+    made_by: Creation | None = None
 
 
 @dataclass(eq=False, slots=True)
@@ -195,8 +197,8 @@ class LibraryClass:
 
 
 class Creation(NamedTuple):
-    """The call that made an object: its code, the frame in which it was evaluated, and the
-    arguments."""
+    """The call that made an object or a frame: its code, the frame in which it was evaluated, and
+    the arguments."""
 
     node: ast.expr | None
     frame: Frame

@@ -4,7 +4,7 @@ container class, an interface for each state type."""
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from smachac.diagnostics.source import Span
@@ -100,38 +100,38 @@ class _Scope:
         self.around = around
         self.given = given
         self.used: dict[str, str] = {}
+        self.unknown: dict[Hashable, str] = {}
 
     def value(self, argument: Argument, writer: _Writer, *, inside: bool = False) -> str:
         """The YAML of an argument."""
         name = argument.parameter
         if name in self.given:
             if name not in self.used:
-                outer = self.given[name]
-                self.used[name] = (
-                    self.around.value(outer, writer)
-                    if self.around is not None
-                    else writer.constant(outer, name)
-                )
+                self.used[name] = self._outer(self.given[name], name, writer)
             return f"[params, {name}]"
         if argument.is_known:
             return writer.data(argument, inside=inside)
-        name = _last_name(argument)
-        writer.note_unknown(argument, name)
-        return self.unknown(name)
+        return f"[params, {self.param(argument, writer)}]"
 
-    def unknown(self, name: str) -> str:
-        own = name
-        while own in self.given:
-            own += "_"
-        if own not in self.used:
-            self.used[own] = self.around.unknown(name) if self.around is not None else "null"
-        return f"[params, {own}]"
+    def param(self, argument: Argument, writer: _Writer) -> str:
+        """The param for a value that is not known; arguments with one source have one param."""
+        if argument.source not in self.unknown:
+            base = re.sub(r"\W+", "_", argument.word) or "value"
+            name, number = base, 2
+            while name in self.given or name in self.used:
+                name, number = f"{base}_{number}", number + 1
+            self.unknown[argument.source] = name
+            self.used[name] = self._outer(argument, name, writer)
+        return self.unknown[argument.source]
 
-
-def _last_name(argument: Argument) -> str:
-    """The name of the param for a value that is not known: the last word of its code."""
-    words: list[str] = re.findall(r"[^\W\d]\w*", argument.text.partition("(")[0])
-    return words[-1] if words else argument.name or "value"
+    def _outer(self, argument: Argument, name: str, writer: _Writer) -> str:
+        """The value of a param in the script that calls this one, or in the main script."""
+        if self.around is not None:
+            return self.around.value(argument, writer)
+        if not argument.is_known:
+            writer.lose(argument.span, f"`{argument.text}` is not known",
+                        f"give the param `{name}` of the script a value")  # fmt: skip
+        return writer.data(argument)
 
 
 class _Writer:
@@ -144,7 +144,7 @@ class _Writer:
         self.sub_scripts: dict[str, str] = {}
         self.script_names: set[str] = set()
         self.used: set[str] = set()
-        self.noted: set[tuple[Span, str]] = set()
+        self.noted: set[tuple[Span, str, str]] = set()
         self.machine: PythonMachine
 
     def place(self, span: Span) -> str:
@@ -173,24 +173,14 @@ class _Writer:
         return made
 
     def lose(self, span: Span, text: str, help: str) -> None:
-        if (span, text) not in self.noted:
-            self.noted.add((span, text))
+        if (span, text, help) not in self.noted:
+            self.noted.add((span, text, help))
             self.made.lost.append(Lost(span=span, text=text, help=help))
-
-    def note_unknown(self, argument: Argument, name: str) -> None:
-        self.lose(argument.span, f"`{argument.text}` is not known",
-                  f"give the param `{name}` of the script a value")  # fmt: skip
 
     def data(self, argument: Argument, *, inside: bool = False) -> str:
         """The YAML of a known value."""
         self.used.update(argument.modules)
         return data_text(argument.data, inside=inside)
-
-    def constant(self, argument: Argument, name: str) -> str:
-        """The value of a param of the main script."""
-        if not argument.is_known:
-            self.note_unknown(argument, name)
-        return self.data(argument)
 
     # --- scripts
 

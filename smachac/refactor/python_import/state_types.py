@@ -140,7 +140,8 @@ class StateTypes:
         fixed, variables, passed = _split(construction, leaf, wrapped=wrapped)
         obstacle = construction.obstacle
         which = (
-            construction.cls, construction.library, construction.file, fixed, tuple(passed),
+            construction.cls, construction.library, construction.file, fixed,
+            tuple(passed) if wrapped else (),
             obstacle and construction.short, obstacle, leaf.open, outcome_names(leaf),
             tuple((key.name, is_optional(key)) for key in leaf.inputs),
             tuple(key.name for key in leaf.outputs),
