@@ -15,7 +15,7 @@ import sys
 import threading
 import types
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 MOST_VISITS = 300
 """The most visits of all states in a run: a loop need not end."""
@@ -45,8 +45,6 @@ class _Anything:
 
 
 class _Package(types.ModuleType):
-    __path__: ClassVar[list[str]] = []
-
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
             raise AttributeError(name)
@@ -76,9 +74,10 @@ def provide(smach: Any) -> None:
     )
     smach_ros.MonitorState = ready("valid", "invalid", "preempted")  # type: ignore[attr-defined]
     sys.modules["smach_ros"] = smach_ros
-    packages = ("rospy", "rosgraph_msgs", "std_srvs", "std_msgs", "nav_of_mine")
-    for name in [f"{package}{part}" for package in packages for part in ("", ".srv", ".msg")]:
-        sys.modules[name] = _Package(name)
+    names = ("rospy", "rosgraph_msgs", "std_srvs", "std_msgs", "nav_of_mine")
+    for name in [f"{package}{part}" for package in names for part in ("", ".srv", ".msg")]:
+        sys.modules[name] = package = _Package(name)
+        package.__path__ = []
     vendor = types.ModuleType("voice_of_vendor")
     vendor.Speak = type(  # type: ignore[attr-defined]
         "Speak", (smach.State,),

@@ -300,8 +300,10 @@ class _Reader:
         place = made.span or self.graph.machine.root.span
         found = []
         written = _written(made)
+        if len(given.positional) > len(names):  # `*arguments` takes some of them
+            names = [""] * len(given.positional)
         for at, value in enumerate(given.positional):
-            name = names[at] if at < len(names) else ""
+            name = names[at]
             found.append(self._argument(name, value, written.get(at), frame, around, place))
         for key, value in given.named:
             found.append(self._argument(key, value, written.get(key), frame, around, place))

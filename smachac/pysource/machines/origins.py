@@ -111,7 +111,8 @@ class Origins:
     def _changes(self, here: Origin) -> bool:
         """Whether a name in code can have several values in its function or module."""
         function, text = here.frame.function, here.frame.module.text
-        root: ast.AST | None = function.node if function is not None else text and text.tree
+        root: ast.AST | None = text.tree if text is not None else None
+        root = function.node if function is not None else root
         if root is None:
             return True
         known = self._assigned(root)
