@@ -175,7 +175,7 @@ def main(runs: int, machines: list[str]) -> None:
     try:
         import smach
     except ImportError:
-        from smachac.runtime import smach  # type: ignore[no-redef]
+        from smachac.runtime import smach
 
         sys.modules["smach"] = smach
     smach.set_loggers(*[lambda *words: None] * 4)

@@ -72,7 +72,7 @@ class Argument:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClassPlace:
-    """A class that code can import: its module and its name."""
+    """A class, or something else that code can import: its module and its name."""
 
     module: str
     name: str
@@ -377,22 +377,29 @@ class _Reader:
         found = names.visit(copied)
         return None if names.is_local else (ast.unparse(found), tuple(sorted(names.modules)))
 
-    def module_of(self, name: str, frame: Frame) -> str | None:
-        """The module from which code in another one gets a name; empty for one of Python; None if
-        there is none."""
+    def imported(self, name: str, frame: Frame) -> ClassPlace | None:
+        """How code in another module gets what a name means; a place without a module for names
+        of Python, and None if there is none. Of a module the name is empty."""
         at: Frame | None = frame
         module = frame.module
         while at is not None and at.slots is not module.slots:
             if name in at.slots:
                 return None
             at = at.around
-        if name in module.slots:
-            found, folder, obstacle = self._module_place(module.file)
-            if obstacle or not self._has(module, name, None):
-                return None
-            self.modules[found] = folder
-            return found
-        return "" if hasattr(builtins, name) else None
+        if name not in module.slots:
+            return ClassPlace(module="", name=name) if hasattr(builtins, name) else None
+        value: Value = module.slots[name]
+        owner, word, node = module, name, None
+        match value:
+            case Class() | Function() if value.frame.module.slots.get(value.name) is value:
+                owner, word, node = value.frame.module, value.name, value.node
+            case ModuleValue(text=PythonText()):
+                owner, word = value, ""
+        found, folder, obstacle = self._module_place(owner.file)
+        if obstacle or (word and not self._has(owner, word, node)):
+            return None
+        self.modules[found] = folder
+        return ClassPlace(module=found, name=word)
 
     def _types(self, made: Instance) -> Mapping[str, str]:
         """The types of ROS in the arguments, by the parameter: `std_srvs/SetBool`."""
@@ -401,11 +408,11 @@ class _Reader:
         names = self._parameters(made)
         if takes_node(made.cls, made.made_by.arguments):
             names = ["node", *names]
+        given = made.made_by.arguments
+        values: list[tuple[int | str, Value]] = [*enumerate(given.positional), *given.named]
         found = {}
-        for at, value in [*enumerate(made.made_by.arguments.positional),
-                          *made.made_by.arguments.named]:  # fmt: skip
-            node = written.get(at)
-            match value, node:
+        for at, value in values:
+            match value, written.get(at):
                 case Unknown(reason=reason), ast.Name(id=word) | ast.Attribute(attr=word) if reason:
                     package = reason.partition(".")[0]
                     name = names[at] if isinstance(at, int) and at < len(names) else str(at)
@@ -511,13 +518,13 @@ class _Names(ast.NodeTransformer):
     def visit_Name(self, node: ast.Name) -> ast.AST:
         if node.id in self.inner:
             return node
-        module = self.reader.module_of(node.id, self.frame)
-        if module is None:
+        place = self.reader.imported(node.id, self.frame)
+        if place is None:
             self.is_local = True
-        if not module:
+        if place is None or not place.module:
             return node
-        self.modules.add(module)
-        return ast.parse(f"{module}.{node.id}", mode="eval").body
+        self.modules.add(place.module)
+        return ast.parse(f"{place.module}.{place.name}".rstrip("."), mode="eval").body
 
 
 UNWRITTEN = object()

@@ -86,7 +86,7 @@ def import_python(path: Path, folder: Path, disk: Disk, wanted: str | None = Non
     all_names = [*(machine.label for machine in machines), *(one.name for one in incomplete)]
     machines = [machine for machine in machines if wanted in (None, machine.label)]
     incomplete = [machine for machine in incomplete if wanted in (None, machine.name)]
-    names = [machine.name for machine in (*machines, *incomplete)]
+    names = [*(machine.name for machine in machines), *(one.name for one in incomplete)]
     if not machines:
         return Imported(file=file, incomplete=incomplete, names=names, all_names=all_names)
     ros = max(machine.constructions.ros for machine in machines)

@@ -80,11 +80,12 @@ def _different_container(
     keys = ({preset.key for preset in node.userdata} for node in (python, script))
     yield from _unequal(path, "userdata", *keys)
     match python, script:
-        case (StateMachine(), StateMachine()) | (SequenceNode(), SequenceNode()):
+        case StateMachine(), StateMachine():
             yield from _unequal(path, "the first state", python.initial, script.initial)
-            if isinstance(python, SequenceNode) and isinstance(script, SequenceNode):
-                own, other = python.connector_outcome, script.connector_outcome
-                yield from _unequal(path, "the connector outcome", own, other)
+        case SequenceNode(), SequenceNode():
+            yield from _unequal(path, "the first state", python.initial, script.initial)
+            own, other = python.connector_outcome, script.connector_outcome
+            yield from _unequal(path, "the connector outcome", own, other)
         case Concurrence(), Concurrence():
             callbacks = constructions.callbacks.get(names, Callbacks())
             yield from _different_rules(path, python, script, callbacks)
