@@ -17,8 +17,7 @@ import pytest
 
 from smachac.commands.cli import main
 from smachac.frontend.files import Disk
-from smachac.ir.nodes import Concurrence, Container, Key, Leaf, Node, Outcome, Preset
-from smachac.ir.nodes import Iterator as IteratorNode
+from smachac.ir.nodes import Key, Leaf, Node, Outcome
 from smachac.pysource.machines import evaluator
 from smachac.python_machines import Built, PythonProject
 from smachac.refactor.equivalence import map_nodes
@@ -169,14 +168,6 @@ def test_the_proof_finds_each_difference(name: str) -> None:
     other: Any = map_nodes(root, changed(state, change))
     assert other != root
     assert differences(root, other, constructions) != []
-
-
-def test_the_machines_of_the_proof_have_all_kinds() -> None:
-    kinds = {type(node) for name in ("concurrence", "rare")
-             for node in built(name)[0].machine.root.children}  # fmt: skip
-    assert {Concurrence, IteratorNode} < kinds
-    assert all(issubclass(kind, Container | Leaf) for kind in kinds)
-    assert Preset
 
 
 # --- twice, and over other files

@@ -117,7 +117,8 @@ class Callbacks:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Constructions:
     """The constructions of the states of a machine, the values that their userdata has first, the
-    items of iterators, and the callbacks of concurrences, each by the path of names. `modules` are
+    items of iterators, and the callbacks of concurrences, each by the path of names. `registered`
+    are the calls that register other functions of containers, by their names. `modules` are
     those that the classes and the code need, each with the folder in which Python has to search
     it. `ros` is the version of ROS that the code imports; 0: none."""
 
@@ -125,6 +126,7 @@ class Constructions:
     userdata: Mapping[Names, tuple[Argument, ...]]
     items: Mapping[Names, Argument]
     callbacks: Mapping[Names, Callbacks]
+    registered: tuple[tuple[str, Span], ...]
     modules: Mapping[str, str]
     ros: int = 0
 
@@ -148,6 +150,7 @@ class _Reader:
         userdata: dict[Names, tuple[Argument, ...]] = {}
         items: dict[Names, Argument] = {}
         callbacks: dict[Names, Callbacks] = {}
+        registered: list[tuple[str, Span]] = []
         for names, node in with_names(self.graph.machine.root):
             self.names = names
             made = self.graph.objects.get(names)
@@ -161,6 +164,7 @@ class _Reader:
             if isinstance(made.cls, Class):
                 states[names] = self._state(made, node.span, around)
             inside = made if isinstance(made.cls, Class) else around
+            registered += _registered(made, node.span)
             userdata[names] = tuple(self._userdata(made, inside))
             if isinstance(node, IteratorNode):
                 items[names] = self._items(made, inside, node.items_span)
@@ -168,6 +172,7 @@ class _Reader:
                 callbacks[names] = self._callbacks(node, made)
         return Constructions(
             states=states, userdata=userdata, items=items, callbacks=callbacks,
+            registered=tuple(dict.fromkeys(registered)),
             modules=dict(sorted(self.modules.items())), ros=self._ros(states),
         )  # fmt: skip
 
@@ -660,6 +665,12 @@ def _short(callback: Argument | None, cls: str) -> str:
     if not name.isidentifier():
         return cls
     return "".join(part[:1].upper() + part[1:] for part in name.split("_")) or cls
+
+
+def _registered(made: Instance, span: Span) -> list[tuple[str, Span]]:
+    """The calls that register functions of a container."""
+    found = sequence(made.slots.get("$callbacks")) or ()
+    return [(str(part.value), part.span or span) for part in found if isinstance(part, Const)]
 
 
 def _is_nothing(value: Value | None) -> bool:

@@ -361,6 +361,22 @@ def _nothing(evaluator: Interpreter, arguments: Arguments, span: Span | None) ->
     return NONE
 
 
+CALLBACKS = ("register_start_cb", "register_transition_cb", "register_termination_cb")
+"""The methods of a container that register functions which it calls while it runs."""
+
+
+def _called_later(name: str) -> Run:
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        me = arguments.get(0, "self")
+        if isinstance(me, Instance):
+            before = me.slots.get("$callbacks", TupleValue(()))
+            known = before.items if isinstance(before, TupleValue) else ()
+            evaluator.heap.set(me.slots, "$callbacks", TupleValue((*known, Const(name, span))))
+        return NONE
+
+    return run
+
+
 _STATE: Mapping[str, Run] = {
     "__init__": _state,
     "execute": _execute,
@@ -373,7 +389,6 @@ _STATE: Mapping[str, Run] = {
     "get_registered_output_keys": _registered("$outputs"),
     **dict.fromkeys(
         ("request_preempt", "service_preempt", "recall_preempt", "preempt_requested",
-         "register_start_cb", "register_transition_cb", "register_termination_cb",
          "set_initial_userdata", "check_consistency", "close"), _nothing,
     ),
 }  # fmt: skip
@@ -402,6 +417,7 @@ def _from_keys(evaluator: Interpreter, arguments: Arguments, span: Span | None) 
 
 _CONTAINER: Mapping[str, Run] = {
     **_STATE,
+    **{name: _called_later(name) for name in CALLBACKS},
     "open": _open,
     "close": _close,
     "set_initial_state": _set_initial,

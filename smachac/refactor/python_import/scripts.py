@@ -187,6 +187,8 @@ class _Writer:
     def add(self, machine: PythonMachine, stem: str) -> None:
         self.machine = machine
         self.made.modules |= machine.constructions.modules
+        for name, span in machine.constructions.registered:
+            self.lose(span, f"the function of `{name}`", "call it in a state")
         root = machine.root
         names = (root.name,)
         construction = machine.constructions.states.get(names)

@@ -26,7 +26,13 @@ with either:
     smach.Concurrence.add('ARM', Move())
     smach.Concurrence.add('HEAD', Move())
 
+
+def noted(userdata, active, outcome):
+    print(outcome)
+
+
 sm = smach.StateMachine(outcomes=['end', 'failed'])
+sm.register_termination_cb(noted)
 with sm:
     smach.StateMachine.add('BOTH', both, {'prepared': 'EITHER', 'unprepared': 'failed'})
     smach.StateMachine.add('EITHER', either, {'fast': 'end', 'slow': 'failed'})
