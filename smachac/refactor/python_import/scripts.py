@@ -102,7 +102,7 @@ class _Scope:
         self.used: dict[str, str] = {}
         self.unknown: dict[Hashable, str] = {}
 
-    def value(self, argument: Argument, writer: _Writer, *, inside: bool = False) -> str:
+    def value(self, argument: Argument, writer: _Writer) -> str:
         """The YAML of an argument."""
         name = argument.parameter
         if name in self.given:
@@ -110,7 +110,7 @@ class _Scope:
                 self.used[name] = self._outer(self.given[name], name, writer)
             return f"[params, {name}]"
         if argument.is_known:
-            return writer.data(argument, inside=inside)
+            return writer.data(argument)
         return f"[params, {self.param(argument, writer)}]"
 
     def param(self, argument: Argument, writer: _Writer) -> str:
@@ -177,10 +177,10 @@ class _Writer:
             self.noted.add((span, text, help))
             self.made.lost.append(Lost(span=span, text=text, help=help))
 
-    def data(self, argument: Argument, *, inside: bool = False) -> str:
+    def data(self, argument: Argument) -> str:
         """The YAML of a known value."""
         self.used.update(argument.modules)
-        return data_text(argument.data, inside=inside)
+        return data_text(argument.data)
 
     # --- scripts
 
@@ -249,14 +249,8 @@ class _Writer:
                 fields["output_keys"] = keys_text(leaf.outputs)
             return fields
         type_, variables = self.types.of(leaf, construction)
-        fields = {"template": type_}
-        for name, arguments in variables.items():
-            if name == "arguments":
-                items = [scope.value(argument, self, inside=True) for argument in arguments]
-                fields[name] = f"[{', '.join(items)}]"
-            else:
-                fields[name] = scope.value(arguments[0], self)
-        return {name_text(name): text for name, text in fields.items()}
+        given = {name_text(name): scope.value(part, self) for name, part in variables.items()}
+        return {"template": type_, **given}
 
     def call_fields(self, names: Names, node: Container, scope: _Scope) -> dict[str, str]:
         """The call of the sub-script for a container of a class of the user."""
@@ -347,7 +341,7 @@ class _Writer:
         fields = {}
         items = self.machine.constructions.items.get(names)
         if items is not None:
-            fields["it"] = scope.value(items, self, inside=True)
+            fields["it"] = scope.value(items, self)
         fields["it_label"] = name_text(node.item_key)
         fields["exhausted_outcome"] = name_text(node.exhausted_outcome)
         fields["loop_outcomes"] = names_text(node.loop_outcomes)

@@ -60,7 +60,7 @@ _FIELDS = frozenset(schema.names_for("state")) - frozenset(["timeout", "retry", 
 
 RESERVED = frozenset({
     *_FIELDS, *(short for short, long in schema.LONG.items() if long in _FIELDS),
-    "callbacks", "cb", "arguments",
+    "callbacks", "cb",
 })  # fmt: skip
 """Words that no variable of a state type can have as its name: fields of a state."""
 
@@ -131,9 +131,8 @@ class StateTypes:
             variables[words[argument.name]] = argument
         return name, variables
 
-    def of(self, leaf: Leaf, construction: Construction) -> tuple[str, dict[str, list[Argument]]]:
-        """The name of the state type of a state, and the variables of the state. A variable with
-        several arguments is a list of them."""
+    def of(self, leaf: Leaf, construction: Construction) -> tuple[str, dict[str, Argument]]:
+        """The name of the state type of a state, and the variables of the state."""
         if construction.node:
             construction = replace(construction, obstacle="it needs the node of ROS 2")
         wrapped = _is_wrapped(construction)
@@ -191,28 +190,24 @@ def _is_wrapped(construction: Construction) -> bool:
 
 def _split(
     construction: Construction, leaf: Leaf, *, wrapped: bool
-) -> tuple[tuple[str, ...], dict[str, list[Argument]], dict[str, str]]:
+) -> tuple[tuple[str, ...], dict[str, Argument], dict[str, str]]:
     """The arguments that a class of the import passes as they are, as code; the variables of the
-    state; and the parameter for which each variable is."""
+    state; and the parameter for which each variable is, which is empty for one with a place."""
     if construction.obstacle:
         return (), {}, {}
     fixed: list[str] = []
-    variables: dict[str, list[Argument]] = {}
+    variables: dict[str, Argument] = {}
     passed: dict[str, str] = {}
-    listed = any(not argument.name for argument in construction.arguments)
-    for argument in construction.arguments:
+    for at, argument in enumerate(construction.arguments, 1):
         name = argument.name
         if construction.library and name in _INTERFACE:
             continue
-        if not name:
-            variables.setdefault("arguments", []).append(argument)
-            passed["arguments"] = "*"
-        elif wrapped and not listed and isinstance(argument.data, Expression):
+        if wrapped and name and isinstance(argument.data, Expression):
             fixed.append(f"{name}={argument.data.text}")
-        else:
-            variable = f"{name}_argument" if name in RESERVED else name
-            variables[variable] = [argument]
-            passed[variable] = name
+            continue
+        variable = f"{name}_argument" if name in RESERVED else name or f"argument_{at}"
+        variables[variable] = argument
+        passed[variable] = name
     if construction.library:
         fixed.append(f"outcomes={[*outcome_names(leaf)]!r}")
         fixed += [f"{name}={[key.name for key in keys]!r}" for name, keys in
@@ -272,8 +267,7 @@ def _wrapper(made: ImportedType) -> list[str]:
     """A class that passes arguments to that of the user or of SMACH."""
     cls = made.construction.cls
     base = f"{cls.module}.{cls.name}" if cls is not None else made.construction.library
-    given = ["*arguments"] if "arguments" in made.passed else []
-    given += [f"{name}={variable}" for variable, name in made.passed.items() if name != "*"]
+    given = [f"{name}={variable}" if name else variable for variable, name in made.passed.items()]
     given += made.fixed
     parameters = "".join(f", {name}" for name in made.passed)
     lines = [f"class {made.name}({base}):", f'    """{made.place}"""', "",

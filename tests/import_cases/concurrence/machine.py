@@ -27,8 +27,11 @@ with either:
     smach.Concurrence.add('HEAD', Move())
 
 
+ENDED = []
+
+
 def noted(userdata, active, outcome):
-    print(outcome)
+    ENDED.append(outcome)
 
 
 sm = smach.StateMachine(outcomes=['end', 'failed'])

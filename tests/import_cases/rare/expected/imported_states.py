@@ -1,4 +1,4 @@
-# Imported from machine.py by smachac; the lines below have the sha256 b435d8a6b1a8b009.
+# Imported from machine.py by smachac; the lines below have the sha256 218b43b2adcc0e60.
 """Classes for the states of the scripts in this folder."""
 
 import machine
@@ -7,5 +7,5 @@ import machine
 class Do_2(machine.Do):
     """../machine.py:5"""
 
-    def __init__(self, arguments):
-        super().__init__(*arguments)
+    def __init__(self, argument_1, argument_2):
+        super().__init__(argument_1, argument_2)
