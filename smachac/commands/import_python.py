@@ -104,8 +104,8 @@ def _put(made: Imported, arguments: Namespace) -> int:
         print(not_written(error), file=sys.stderr)
         return FINDINGS
     for name in edited:
-        print(f"error: {shown(folder / name)} was edited, or is no file of an import: nothing was"
-              " written", file=sys.stderr)  # fmt: skip
+        print(f"error: {shown(folder / name)} was edited, or is no file of an import of this"
+              " Python file: nothing was written", file=sys.stderr)  # fmt: skip
     if edited:
         print("help: import into an empty folder with `-o`, and compare the two", file=sys.stderr)
         return FINDINGS
@@ -119,6 +119,8 @@ def _put(made: Imported, arguments: Namespace) -> int:
             print(f"wrote {shown(path)}")
         if not written:
             print(f"{shown(folder)} is up to date")
+        for name in _unused(folder, made.texts):
+            print(f"no longer used: {shown(folder / name)}")
     for lost in made.lost:
         print(f"not taken over: {_place(lost.span)}: {shown(lost.text)}")
         print(f"  help: {shown(lost.help)}")
@@ -130,29 +132,43 @@ def _on_disk(folder: Path, texts: Mapping[str, str]) -> tuple[list[str], dict[st
     that differ from those on disk. Raises OSError."""
     import os
 
-    from smachac.frontend.files import TooBigError, read_bytes
-    from smachac.refactor.python_import.project import is_unedited
+    from smachac.refactor.python_import.project import imported_from
 
-    edited: list[str] = []
+    in_the_way: list[str] = []
     changed: dict[str, str] = {}
     for name, text in texts.items():
         path = folder / name
-        if not os.path.lexists(path):
+        before = _text(path)
+        if before != text:
             changed[name] = text
-            continue
-        changed[name] = text
-        if path.is_symlink() or not path.is_file():
-            edited.append(name)
-            continue
-        try:
-            before = read_bytes(path).decode("utf-8")
-        except (ValueError, TooBigError):
-            before = ""
-        if before == text:
-            del changed[name]
-        elif not is_unedited(before):
-            edited.append(name)
-    return edited, changed
+            own = before is not None and imported_from(before) == imported_from(text)
+            if os.path.lexists(path) and not own:
+                in_the_way.append(name)
+    return in_the_way, changed
+
+
+def _text(path: Path) -> str | None:
+    """The text of a file; None if there is none, or a link."""
+    from smachac.frontend.files import TooBigError, read_bytes
+
+    if path.is_symlink() or not path.is_file():
+        return None
+    try:
+        return read_bytes(path).decode("utf-8")
+    except (ValueError, TooBigError):
+        return None
+
+
+def _unused(folder: Path, texts: Mapping[str, str]) -> list[str]:
+    """The files of an earlier import of the same Python file that this one does not have."""
+    from smachac.refactor.python_import.project import imported_from
+
+    (source, *_) = {imported_from(text) for text in texts.values()}
+    paths = sorted([*folder.glob("*.*"), *folder.glob("templates/*.*")])
+    names = [path.relative_to(folder).as_posix() for path in paths]
+    return [name for name in names if name not in texts
+            and (text := _text(folder / name)) is not None
+            and imported_from(text) == source]  # fmt: skip
 
 
 def _print_proofs(made: Imported, arguments: Namespace) -> int:

@@ -211,6 +211,33 @@ def test_a_project_that_was_not_edited_follows_the_machine(case: Callable[[str],
     assert "seconds: 7" in (folder / "project/Visit.yml").read_text("utf-8")
 
 
+def test_files_that_an_import_no_longer_has_are_named(
+    case: Callable[[str], Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = case("subclass")
+    main(["import", "machine.py", "-o", "project"])
+    machine = folder / "machine.py"
+    machine.write_text(machine.read_text("utf-8").replace("rest=True", "rest=False"), "utf-8")
+    capsys.readouterr()
+    assert main(["import", "machine.py", "-o", "project"]) == 0
+    assert "no longer used: project/Visit_2.yml\n" in capsys.readouterr().out
+
+
+def test_the_project_of_another_file_is_not_overwritten(
+    case: Callable[[str], Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = case("subclass")
+    main(["import", "machine.py", "-o", "project"])
+    other = folder / "other" / "machine.py"
+    other.parent.mkdir()
+    shutil.copy(CASES / "literal" / "machine.py", other)
+    before = written(folder / "project")
+    capsys.readouterr()
+    assert main(["import", "other/machine.py", "-o", "project"]) == 1
+    assert written(folder / "project") == before
+    assert "error: project/main.yml was edited, or is no file of" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("kind", ["file", "link", "folder"])
 def test_files_of_others_are_not_touched(
     kind: str, case: Callable[[str], Path], capsys: pytest.CaptureFixture[str]
@@ -335,6 +362,16 @@ def test_odd_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     Path("machine.py").write_text("\n".join(lines) + "\n", "utf-8")
     assert main(["import", "machine.py", "-o", "project"]) == 0
     assert main(["build", "project/main.yml", "--target", "python", "-o", "out", "-q"]) == 0
+
+
+@pytest.mark.parametrize("name", ["ma\nchine.py", "mä ch#}.py", "1.py", "main.py", "sm.py"])
+def test_odd_file_names(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / ".git").mkdir()
+    shutil.copy(CASES / "callbacks" / "machine.py", tmp_path / name)
+    assert main(["import", name, "-o", "project", "-q"]) == 0
+    assert main(["build", "project/main.yml", "--target", "python", "-o", "out", "-q"]) == 0
+    assert main(["import", name, "-o", "project", "-q"]) == 0
 
 
 def test_a_name_that_no_script_can_have_is_reported(

@@ -30,10 +30,10 @@ from smachac.refactor.python_import.scripts import (
     settings,
     state_count,
 )
-from smachac.refactor.python_import.state_types import OWN_MODULE, relative
+from smachac.refactor.python_import.state_types import OWN_MODULE, in_comment, relative
 
 MARK = re.compile(
-    r"(?:# |\{#- )Imported from .* by smachac; the lines below have the sha256 ([0-9a-f]{16})\.?"
+    r"(?:# |\{#- )Imported from (.*) by smachac; the lines below have the sha256 ([0-9a-f]{16})\.?"
     r"(?: -#\})?\n"
 )
 """The first line of each file of an import. Its digest shows whether the file was edited."""
@@ -97,7 +97,8 @@ def import_python(path: Path, folder: Path, disk: Disk, wanted: str | None = Non
     made.texts["smachac.toml"] = settings(folders, ros)
     made.texts = _formatted(made.texts)
     proofs = _checked(made, folder, file, disk)
-    texts = {name: _marked(name, text, path.name) for name, text in sorted(made.texts.items())}
+    source = in_comment(str(path), folder)
+    texts = {name: _marked(name, text, source) for name, text in sorted(made.texts.items())}
     lost = sorted(made.lost, key=lambda item: (item.span.source.name, item.span.start, item.text))
     return Imported(
         file=file, texts=texts, lost=lost, proofs=proofs, incomplete=incomplete, names=names,
@@ -230,7 +231,8 @@ def _checked(made: ScriptFiles, folder: Path, file: PythonFile, disk: Disk) -> l
     known = {item.code for item in file.report}
     analyses: dict[str, Analysis] = {}
     for _ in range(ROUNDS):
-        texts = {name: _marked(name, text, file.path.name) for name, text in made.texts.items()}
+        source = in_comment(str(file.path), folder)
+        texts = {name: _marked(name, text, source) for name, text in made.texts.items()}
         analyses = {name: _analysis(name, texts, folder, disk) for name in made.main}
         places: dict[str, dict[int, set[str]]] = {}
         for analysis in analyses.values():
@@ -242,7 +244,7 @@ def _checked(made: ScriptFiles, folder: Path, file: PythonFile, disk: Disk) -> l
         if not places:
             break
         for name, lines in places.items():
-            made.texts[name] = _allowed(made.texts[name], lines, file.path.name)
+            made.texts[name] = _allowed(made.texts[name], lines, in_comment(file.path.name, Path()))
     return [_proof(name, made.main[name], analysis) for name, analysis in analyses.items()]
 
 
@@ -299,10 +301,11 @@ def _marked(name: str, text: str, python: str) -> str:
     return f"{{#- {words} -#}}\n{text}" if name.endswith(".tpl.py") else f"# {words}.\n{text}"
 
 
-def is_unedited(text: str) -> bool:
-    """Whether a text is a file of an import, as it was written."""
+def imported_from(text: str) -> str | None:
+    """The Python file from which a text was imported, from the folder of the project; None if the
+    text is no file of an import, or was edited since."""
     found = MARK.match(text)
     if found is None:
-        return False
-    rest = text[found.end() :]
-    return hashlib.sha256(rest.encode("utf-8", "surrogatepass")).hexdigest()[:16] == found[1]
+        return None
+    rest = text[found.end() :].encode("utf-8", "surrogatepass")
+    return found[1] if hashlib.sha256(rest).hexdigest()[:16] == found[2] else None

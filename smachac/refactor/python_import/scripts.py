@@ -32,8 +32,8 @@ from smachac.records import dataclass, field
 from smachac.refactor.python_import.state_types import (
     OWN_MODULE,
     StateTypes,
+    in_comment,
     keys_text,
-    relative,
 )
 from smachac.refactor.python_import.yaml_text import (
     data_text,
@@ -149,7 +149,7 @@ class _Writer:
 
     def place(self, span: Span) -> str:
         """A place as text: `parcels.py:38`, from the folder of the project."""
-        return f"{relative(span.source.name, self.folder)}:{span.line}"
+        return f"{in_comment(span.source.name, self.folder)}:{span.line}"
 
     def files(self) -> ScriptFiles:
         made = self.made

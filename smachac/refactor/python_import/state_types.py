@@ -296,6 +296,12 @@ def _stub(made: ImportedType) -> list[str]:
     ]  # fmt: skip
 
 
+def in_comment(path: str, folder: Path) -> str:
+    """A path from a folder as a comment can have it, in YAML, Python and Jinja."""
+    text = relative(path, folder).replace("#}", "# }")
+    return "".join(letter if letter.isprintable() else "?" for letter in text)
+
+
 def relative(path: str, folder: Path) -> str:
     """A path from a folder, with `/`."""
     return os.path.relpath(path, folder).replace(os.sep, "/")

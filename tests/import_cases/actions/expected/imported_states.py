@@ -1,4 +1,4 @@
-# Imported from machine.py by smachac; the lines below have the sha256 7bbcd73e9f147de3.
+# Imported from ../machine.py by smachac; the lines below have the sha256 7bbcd73e9f147de3.
 """Classes for the states of the scripts in this folder."""
 
 try:

@@ -1,4 +1,4 @@
-# Imported from machine.py by smachac; the lines below have the sha256 6c17f4cc35471a63.
+# Imported from ../machine.py by smachac; the lines below have the sha256 6c17f4cc35471a63.
 """Classes for the states of the scripts in this folder."""
 
 try:

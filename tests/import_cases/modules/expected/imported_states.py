@@ -1,4 +1,4 @@
-# Imported from machine.py by smachac; the lines below have the sha256 ca11574730dcf692.
+# Imported from ../machine.py by smachac; the lines below have the sha256 ca11574730dcf692.
 """Classes for the states of the scripts in this folder."""
 
 import voice_of_vendor

@@ -1,4 +1,4 @@
-# Imported from machine.py by smachac; the lines below have the sha256 218b43b2adcc0e60.
+# Imported from ../machine.py by smachac; the lines below have the sha256 218b43b2adcc0e60.
 """Classes for the states of the scripts in this folder."""
 
 import machine

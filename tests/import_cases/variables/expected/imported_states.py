@@ -1,4 +1,4 @@
-# Imported from machine.py by smachac; the lines below have the sha256 ed6e213ea99e86dc.
+# Imported from ../machine.py by smachac; the lines below have the sha256 ed6e213ea99e86dc.
 """Classes for the states of the scripts in this folder."""
 
 import machine
