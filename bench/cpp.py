@@ -61,6 +61,7 @@ STEPPED = {
     "ping-pong": (machines.ring(2), machines.stepped_ring_by_hand(2)),
     "ring of 10": (machines.ring(10), machines.stepped_ring_by_hand(10)),
     "ring of 100": (machines.ring(100), machines.stepped_ring_by_hand(100)),
+    "ring of 1,000": (machines.ring(1000), machines.stepped_ring_by_hand(1000)),
     "3 levels, a number": (machines.levels("Hit"), machines.stepped_levels_by_hand("Hit")),
     "3 levels, a PoseStamped": (
         machines.levels("HitPose"),

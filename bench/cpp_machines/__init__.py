@@ -166,7 +166,7 @@ def stepped_ring_by_hand(count: int) -> str:
 namespace hand {{
 using bench::by_hand::Data, bench::by_hand::Outcome;
 struct States {{ bench::by_hand::Hit {", ".join(names)}; }};
-enum class State : std::uint8_t {{ {", ".join(names)} }};
+enum class State : std::uint16_t {{ {", ".join(names)} }};
 struct Machine {{
   Data data;
   States states;
@@ -189,7 +189,7 @@ def stepped_levels_by_hand(hit: str) -> str:
 namespace hand {{
 using bench::by_hand::Data, bench::by_hand::Outcome;
 struct Inner {{
-  enum class State : std::uint8_t {{ A, B }} state = State::A;
+  enum class State : std::uint16_t {{ A, B }} state = State::A;
   bench::by_hand::{hit} A, B;
   Outcome step(Data &data) {{
     switch (state) {{
@@ -206,7 +206,7 @@ struct Inner {{
   }}
 }};
 struct Outer {{
-  enum class State : std::uint8_t {{ INNER, LAST }} state = State::INNER;
+  enum class State : std::uint16_t {{ INNER, LAST }} state = State::INNER;
   Inner INNER;
   bench::by_hand::{hit} LAST;
   Outcome step(Data &data) {{

@@ -9,7 +9,15 @@ import sys
 from argparse import Namespace
 
 from smachac.commands.arguments import colour, quiet
-from smachac.commands.output import FINDINGS, OK, print_report, shown, usage, without_notes
+from smachac.commands.output import (
+    FINDINGS,
+    OK,
+    print_report,
+    shown,
+    target_options,
+    usage,
+    without_notes,
+)
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -26,6 +34,7 @@ examples:
   smachac new state Grasp            templates/Grasp.yml and robot_states/grasp.py
   smachac new state Grasp --input target=Pose --output "width=float<m>" --outcome held
   smachac new state Grasp --target cpp     include/robot_states/grasp.hpp
+  smachac new state Grasp --target cpp --option mode=step    for a stepped machine
   smachac new scenario main.yml      scenarios/OUTCOME.yml for each outcome, for `run --mock`
 
 Existing files are never overwritten.
@@ -47,6 +56,8 @@ def new_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--outcome", action="append", default=[], metavar="NAME",
                         help="an outcome of the state type, or one that a scenario ends with"
                         " (repeatable)")  # fmt: skip
+    parser.add_argument("--option", action="append", default=[], metavar="NAME=VALUE",
+                        help="an option of the target cpp, as for `build`: mode=step")  # fmt: skip
     quiet(parser)
     colour(parser)
 
@@ -150,13 +161,19 @@ def _state(name: str, arguments: Namespace) -> int:
     from smachac.frontend.types.state_types import find_state_type
 
     language: str = arguments.target
+    stepped = _is_stepped(arguments)
+    if not isinstance(stepped, bool):
+        return stepped
     if not is_type_name(name):
         return usage(f"`{name}` is not a name for a state type: write it as `GraspPart`")
+    folder = Path()
+    report: Report = []
+    library = disk_library(folder / "main.yml", report)
     try:
         wanted = NewStateType(
             name=name,
-            inputs=[key_and_type(text) for text in arguments.input],
-            outputs=[key_and_type(text) for text in arguments.output],
+            inputs=[key_and_type(text, library.types) for text in arguments.input],
+            outputs=[key_and_type(text, library.types) for text in arguments.output],
             outcomes=arguments.outcome or ["succeeded", "aborted"],
         )
         for outcome in wanted.outcomes:
@@ -164,10 +181,7 @@ def _state(name: str, arguments: Namespace) -> int:
                 raise BadNameError(f"`{outcome}` is not a name for an outcome")
     except BadNameError as error:
         return usage(str(error))
-    folder = Path()
-    report: Report = []
     files: Files = {}
-    library = disk_library(folder / "main.yml", report)
     there = library.own_template(f"{name}.yml")
     if there is None:
         with_schema = bool(present_files(folder, {INTERFACE_SCHEMA: ""}))
@@ -182,9 +196,10 @@ def _state(name: str, arguments: Namespace) -> int:
     from smachac.targets.cpp.types import UnportableError
 
     try:
-        files[code_file(name, language)] = stub(type_, language)
+        files[code_file(name, language)] = stub(type_, language, library, stepped=stepped)
     except UnportableError as error:
-        return usage(f"C++ cannot express the interface: {error}")
+        help = f"\n{error.help}" if error.help else ""
+        return usage(f"C++ cannot express the interface: {error}{help}")
     package = code_file(name, language).rpartition("/")[0] + "/__init__.py"
     if language == "python" and not present_files(folder, {package: ""}):
         files[package] = ""
@@ -192,6 +207,25 @@ def _state(name: str, arguments: Namespace) -> int:
     if code == OK and there is not None and language not in (*type_.code, *type_.classes):
         print(f"add to the `code` of {there.name}: {code_line(name, language)}")
     return code
+
+
+def _is_stepped(arguments: Namespace) -> bool | int:
+    """Whether the code is for a stepped machine; the exit code after an error of usage."""
+    if not arguments.option:
+        return False
+    from smachac.targets import OptionError
+    from smachac.targets.cpp import TARGET
+    from smachac.targets.cpp.project import project
+
+    options = target_options(arguments.option, TARGET)
+    if isinstance(options, int):
+        return options
+    if arguments.target != "cpp":
+        return usage("--option is for `--target cpp`")
+    try:
+        return project(options).bounds is not None
+    except OptionError as error:
+        return usage(f"--option {error}")
 
 
 def _with(library: Library, name: str, text: str) -> Library:

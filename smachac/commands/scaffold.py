@@ -6,7 +6,10 @@ import re
 from collections.abc import Mapping, Sequence
 from keyword import iskeyword
 
+from smachac.checks.type_words import named
 from smachac.diagnostics.diagnostic import did_you_mean
+from smachac.frontend.loader import Library
+from smachac.frontend.types.type_names import Aliases, filled
 from smachac.ir.nodes import StateType
 from smachac.ir.types import WORDS, Type, parse_type, unknown_words
 from smachac.records import dataclass
@@ -32,15 +35,19 @@ class NewStateType:
     outcomes: Sequence[str] = ("succeeded", "aborted")
 
 
-def key_and_type(text: str) -> tuple[str, str]:
-    """`target` or `target=Pose`. Raises BadNameError."""
+def key_and_type(text: str, names: Aliases) -> tuple[str, str]:
+    """`target` or `target=Pose`; `names` are the types that the project file names. Raises
+    BadNameError."""
     key, _, named = text.partition("=")
     if not key.isidentifier():
         raise BadNameError(f"`{key}` is not a name for a key")
-    if named and parse_type(named) is None:
+    type_ = parse_type(filled(named or "any", names))
+    if type_ is None:
         raise BadNameError(f"`{named}` is not a type")
-    for word in unknown_words(type_) if (type_ := parse_type(named or "any")) is not None else ():
-        near = did_you_mean(word, WORDS) or "types of ROS have the form `geometry_msgs/Twist`"
+    for word in unknown_words(type_):
+        ros = "types of ROS have the form `geometry_msgs/Twist`"
+        near = did_you_mean(word, [*names, *WORDS])
+        near = near or f"{ros}; `[types]` of smachac.toml names others"
         raise BadNameError(f"there is no type `{word}`\n{near}")
     return key, named or "any"
 
@@ -93,9 +100,21 @@ def code_file(name: str, language: str) -> str:
     return f"{MODULES}/{file_stem(name)}.py"
 
 
-def stub(type_: StateType, language: str) -> str:
-    """Code that fits an interface and does nothing yet."""
-    return _cpp_stub(type_) if language == "cpp" else _python_stub(type_)
+def stub(type_: StateType, language: str, library: Library, *, stepped: bool = False) -> str:
+    """Code that fits an interface and does nothing yet; in C++ for a stepped machine if `stepped`.
+    Raises UnportableError."""
+    if language == "cpp":
+        from smachac.targets.cpp.class_stub import class_stub
+
+        return class_stub(
+            type_,
+            _outcomes(type_),
+            library,
+            namespace=HEADERS,
+            comment=_summary(type_),
+            stepped=stepped,
+        )
+    return _python_stub(type_, library.types)
 
 
 def _summary(type_: StateType) -> str:
@@ -109,7 +128,12 @@ def _outcomes(type_: StateType) -> list[str]:
     return [outcome.name for outcome in type_.outcomes] or ["succeeded"]
 
 
-def _python_stub(type_: StateType) -> str:
+def _python_stub(type_: StateType, names: Aliases) -> str:
+    def written(type_: Type) -> str:
+        """A type with its names, and the records that these are."""
+        text = named(type_, names)
+        return text if text == str(type_) else f"{text}, which is {type_}"
+
     outcomes = _outcomes(type_)
     quoted = _summary(type_).replace('"', "'")
     arguments = [f"outcomes={outcomes!r}"]
@@ -133,8 +157,11 @@ def _python_stub(type_: StateType) -> str:
         *(f"        self.{name} = {name}" for name in type_.variables),
         "",
         "    def execute(self, userdata):",
-        *(f"        # {_access(key.name)}: {key.type}" for key in type_.input_keys),
-        *(f"        {_access(key.name)} = None  # {key.type}" for key in type_.output_keys),
+        *(f"        # {_access(key.name)}: {written(key.type)}" for key in type_.input_keys),
+        *(
+            f"        {_access(key.name)} = None  # {written(key.type)}"
+            for key in type_.output_keys
+        ),
         f"        return {outcomes[0]!r}",
     ]
     return "\n".join(lines) + "\n"
@@ -144,72 +171,6 @@ def _access(key: str) -> str:
     """A key of the userdata in Python."""
     named = key.isidentifier() and not iskeyword(key)
     return f"userdata.{key}" if named else f"userdata[{key!r}]"
-
-
-def _cpp_stub(type_: StateType) -> str:
-    """A class for the target `cpp` (docs/cpp.md). Raises UnportableError."""
-    from smachac.targets.cpp.identifiers import identifier
-    from smachac.targets.cpp.types import cpp_type
-    from smachac.targets.cpp.user_classes import field_type, interface_hash, parameter_type, stops
-
-    def parameter(name: str, of: Type) -> str:
-        text = parameter_type(of)
-        return f"{text}{identifier(name)}" if text.endswith("&") else f"{text} {identifier(name)}"
-
-    outcomes = [*map(identifier, _outcomes(type_))]
-    variables = [(name, variable.type) for name, variable in type_.variables.items()]
-    given = [
-        *(["In in"] if type_.input_keys else []),
-        *(["Out out"] if type_.output_keys else []),
-        *(["smachac::Stop &stop"] if stops(type_) else []),
-    ]
-    members = [f"  {cpp_type(type_)} {identifier(name)}_;" for name, type_ in variables]
-    lines = [
-        f"// {_summary(type_)}",
-        "#pragma once",
-        "",
-        "#include <cstdint>",
-        "",
-        '#include "smachac/smachac.hpp"',
-        "",
-        f"namespace {HEADERS} {{",
-        "",
-        f"class {type_.name} {{",
-        "public:",
-        f"  enum class Outcome {{ {', '.join(outcomes)} }};",
-    ]
-    if type_.input_keys:
-        fields = "; ".join(parameter(key.name, key.type) for key in type_.input_keys)
-        lines.append(f"  struct In {{ {fields}; }};")
-    if type_.output_keys:
-        keys = (f"{field_type('Out', key.type)}{identifier(key.name)}"
-                for key in type_.output_keys)  # fmt: skip
-        lines.append(f"  struct Out {{ {'; '.join(keys)}; }};")
-    lines += [
-        "  // The number of the interface: when the interface changes, this no longer compiles.",
-        f"  static constexpr std::uint32_t smachac_interface = {interface_hash(type_)};",
-        "",
-    ]
-    if variables:
-        taken = ", ".join(parameter(name, type_) for name, type_ in variables)
-        kept = ", ".join(f"{identifier(name)}_({identifier(name)})" for name, _ in variables)
-        explicit = "explicit " if len(variables) == 1 else ""
-        lines += [f"  {explicit}{type_.name}({taken}) : {kept} {{}}", ""]
-    unused = [f"    (void){text.split()[-1].strip('&')};" for text in given if "out" not in text]
-    sets = [f"    out.{identifier(key.name)} = {cpp_type(key.type)}{{}};"
-            for key in type_.output_keys]  # fmt: skip
-    lines += [
-        f"  Outcome execute({', '.join(given)}) {{",
-        *unused,
-        *sets,
-        f"    return Outcome::{outcomes[0]};",
-        "  }",
-        *(["", "private:", *members] if members else []),
-        "};",
-        "",
-        f"}}  // namespace {HEADERS}",
-    ]
-    return "\n".join(lines) + "\n"
 
 
 # --- a project

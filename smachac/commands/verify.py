@@ -191,7 +191,7 @@ def _players(
     for name in targets:
         found: Report = []
         if name in sources:
-            player = _file_player(name, script, sources[name], machine, found)
+            player = _file_player(name, script, sources[name], machine, library, found)
         else:
             player = _generated_player(name, script, machine, library, found, bounds)
         report[:] = merged(report, found)
@@ -216,7 +216,7 @@ def _generated_player(
     from smachac.verify.players import cpp, python, scxml
 
     if target == "cpp":
-        return cpp.player(machine, report, bounds)
+        return cpp.player(machine, report, bounds, library)
     if target == "scxml":
         return scxml.player(machine, report, folders=[script.resolve().parent])
     files = build(machine, TARGET, library, report)
@@ -225,7 +225,7 @@ def _generated_player(
 
 
 def _file_player(
-    target: str, script: Path, source: Source, machine: Checked, report: Report
+    target: str, script: Path, source: Source, machine: Checked, library: Library, report: Report
 ) -> Player:
     """A player of a file on disk, which may use modules or headers beside it and of the project."""
     from pathlib import Path
@@ -235,5 +235,5 @@ def _file_player(
 
     homes = [Path(source.name).parent, *module_folders(script)]
     if target == "cpp":
-        return cpp_file.file_player(source, machine, report, folders=homes)
+        return cpp_file.file_player(source, machine, library, report, folders=homes)
     return python_file.file_player(source, machine, folders=homes)

@@ -13,7 +13,8 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.script import too_big, unreadable_file
-from smachac.ir.types import MOST_BOUND, Bounds
+from smachac.frontend.types.type_names import Aliases, filled, record_text
+from smachac.ir.types import MOST_BOUND, WORDS, Bounds, CppClass, parse_type, unknown_words
 from smachac.pysource.ros_names import DEFAULT_ROS, ROS_VERSIONS, Ros
 from smachac.records import dataclass, field
 
@@ -25,6 +26,9 @@ SETTINGS: Mapping[str, str] = {
     "ros": "The version of ROS of generated programs: 1 or 2.",
     "bounds": "In stepped C++, the bounds of texts (bytes) and lists (items) that have none:"
     " {text = 32, list = 8}.",
+    "types": "Names of types for all scripts and interfaces: Part = {name = 'str', at = 'Pose?'}.",
+    "cpp_types": "Classes of C++ for names of types:"
+    " Part = {class = 'shop::Part', header = 'shop/part.hpp'}.",
     "severity": 'Severities by code, or by the beginning of codes: SM204 = "error".',
 }
 """The settings of a project file, with their descriptions."""
@@ -62,8 +66,9 @@ LONGEST_KEY = 200
 class Project:
     """The settings of a project file: search folders, absolute or relative to the working folder;
     patterns of files to exclude when a folder is checked, relative to `folder`; the version of ROS
-    of generated programs; the bounds of texts and lists that have none; severities. `readable`: no
-    setting with search folders was left out."""
+    of generated programs; the bounds of texts and lists that have none; the types that have names,
+    and the classes of C++ for some of these names and for types of messages; severities.
+    `readable`: no setting with search folders was left out."""
 
     folder: Path = Path()
     scripts: tuple[Path, ...] = ()
@@ -72,6 +77,8 @@ class Project:
     exclude: tuple[str, ...] = ()
     ros: Ros = DEFAULT_ROS
     bounds: Bounds = Bounds()
+    types: Aliases = field(default_factory=dict)
+    cpp_types: Mapping[str, CppClass] = field(default_factory=dict)
     policy: Policy = field(default_factory=Policy)
     readable: bool = True
 
@@ -120,16 +127,11 @@ def read_project(
     folders: dict[str, tuple[Path, ...]] = {}
     texts: dict[str, tuple[str, ...]] = {}
     policy, ros, bounds = Policy(), DEFAULT_ROS, Bounds()
+    types: Aliases = {}
+    cpp_types: Mapping[str, CppClass] = {}
     given = settings
     settings = _with_meant_settings(settings)
-    for key in given:
-        if key == "tool" and path.name == "smachac.toml" and _tool(data) is not None:
-            message = "`[tool.smachac]` is for pyproject.toml; all of smachac.toml is for smachac"
-            help = "write its settings without a table, and `[severity]` for the severities"
-            _wrong(source, key, message, help, report, ("setting", key))
-        elif key not in SETTINGS:
-            message = f"`{key}` is not a setting of smachac"
-            _wrong(source, key, message, _near(key, SETTINGS), report, ("setting", key))
+    _report_unknown(source, path, data, given, report)
     for key, value in settings.items():
         if key not in SETTINGS:
             continue
@@ -139,6 +141,10 @@ def read_project(
             ros = _ros(source, value, report)
         elif key == "bounds":
             bounds = _bounds(source, value, report)
+        elif key == "types":
+            types = _types(source, value, report)
+        elif key == "cpp_types":
+            cpp_types = _cpp_types(source, value, report)
         elif not isinstance(value, list) or not all(isinstance(item, str) for item in value):
             kind = "patterns" if key == "exclude" else "folders"
             message = f"`{key}` must be a list of {kind}"
@@ -156,10 +162,26 @@ def read_project(
         exclude=texts.get("exclude", ()),
         ros=ros,
         bounds=bounds,
+        types=types,
+        cpp_types=cpp_types,
         policy=policy,
         readable=all(isinstance(settings.get(key, []), list) for key in FOLDERS)
         and not any(isinstance(settings[key], list) for key in settings.keys() - SETTINGS.keys()),
     )
+
+
+def _report_unknown(
+    source: Source, path: Path, data: dict[str, Any], given: Iterable[str], report: Report
+) -> None:
+    """Report settings that do not exist."""
+    for key in given:
+        if key == "tool" and path.name == "smachac.toml" and _tool(data) is not None:
+            message = "`[tool.smachac]` is for pyproject.toml; all of smachac.toml is for smachac"
+            help = "write its settings without a table, and `[severity]` for the severities"
+            _wrong(source, key, message, help, report, ("setting", key))
+        elif key not in SETTINGS:
+            message = f"`{key}` is not a setting of smachac"
+            _wrong(source, key, message, _near(key, SETTINGS), report, ("setting", key))
 
 
 def _with_meant_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
@@ -193,6 +215,56 @@ def _bounds(source: Source, value: object, report: Report) -> Bounds:
     help = "write `bounds = {text = 32, list = 8}`"
     _wrong(source, "bounds", message, help, report, ("bounds",))
     return Bounds()
+
+
+def _types(source: Source, value: object, report: Report) -> Aliases:
+    """The types by their names; a type may use earlier names. Wrong ones are left out."""
+    if not isinstance(value, dict):
+        help = "write `[types]`, and below it lines such as `Part = {name = 'str', at = 'Pose?'}`"
+        _wrong(source, "types", "`types` must be a table", help, report, ("table",))
+        return {}
+    found: dict[str, str] = {}
+    for name, written in value.items():
+        text = record_text(written)
+        type_ = parse_type(filled(text, found)) if text is not None else None
+        unknown = unknown_words(type_) if type_ is not None else ()
+        if not name.isidentifier() or name in WORDS:
+            message = f"`{name}` cannot be the name of a type"
+            help = "use letters, digits and `_`, and no word that is a type already"
+            _wrong(source, name, message, help, report, ("type", name))
+        elif type_ is None or unknown:
+            what = f"`{unknown[0]}` is no type" if unknown else "this is no type"
+            near = did_you_mean(unknown[0], [*found, *WORDS]) if unknown else None
+            help = near or "write a type in quotes, or a table of fields: {name = 'str'}"
+            _wrong(source, name, f"{what} (`{name}`)", help, report, ("type", name), at_value=True)
+        else:
+            found[name] = str(type_)
+    return found
+
+
+def _cpp_types(source: Source, value: object, report: Report) -> Mapping[str, CppClass]:
+    """The classes of C++ by the names of types. Wrong ones are left out."""
+    help = "write it as `{class = 'shop::Part', header = 'shop/part.hpp'}`"
+    if not isinstance(value, dict):
+        _wrong(source, "cpp_types", "`cpp_types` must be a table", help, report, ("table",))
+        return {}
+    found: dict[str, CppClass] = {}
+    for name, written in value.items():
+        texts = dict(written) if isinstance(written, dict) else {}
+        class_, header = texts.pop("class", None), texts.pop("header", None)
+        if texts or not isinstance(class_, str) or not isinstance(header, str):
+            message = f"`{name}` must have a class and a header"
+            _wrong(source, name, message, help, report, ("class", name))
+        elif _CLASS.fullmatch(class_) is None or _HEADER.fullmatch(header) is None:
+            message = f"`{name}` names no class of C++ in a header"
+            _wrong(source, name, message, help, report, ("class", name))
+        else:
+            found[name] = CppClass(class_.removeprefix("::"), header)
+    return found
+
+
+_CLASS = re.compile(r"(?:::)?[A-Za-z_]\w*(?:::[A-Za-z_]\w*)*", re.ASCII)
+_HEADER = re.compile(r"[\w.+-]+(?:/[\w.+-]+)*", re.ASCII)
 
 
 def _looks_like_settings(table: object) -> bool:

@@ -466,6 +466,8 @@ def disk_library(
         release=disk.release,
         ros=project.ros if ros is None else ros,
         bounds=project.bounds,
+        types=project.types,
+        cpp_types=project.cpp_types,
         policy=project.policy,
         settings_read=project.readable,
         robot=lambda name: _robot_file(name, disk, report),

@@ -11,7 +11,8 @@ from smachac.diagnostics.diagnostic import (
 from smachac.diagnostics.severities import Policy
 from smachac.diagnostics.source import Source
 from smachac.frontend.text.yaml_tree import Tree, parse
-from smachac.ir.types import Bounds
+from smachac.frontend.types.type_names import Aliases
+from smachac.ir.types import Bounds, CppClass
 from smachac.pysource.user_code import UserCode
 from smachac.records import dataclass, field
 from smachac.robots.files import Packages
@@ -41,7 +42,8 @@ class Library(UserCode):
     names of the files in all folders with a path, such as `std_srvs/srv`; `folders_with(files)` the
     folders below that of the main script that have one of these files. The lists of folders and
     names are for messages. `policy` are the severities of the project, `bounds` the bounds of texts
-    and lists. `parse` may return one tree for all scripts that share a text; `release(source)` is
+    and lists, `types` the types that have names there, `cpp_types` the classes of C++ for some.
+    `parse` may return one tree for all scripts that share a text; `release(source)` is
     called where that of a script is not needed again, and may forget it. `robot(file)` returns a
     description or URDF file of a built-in robot, or a file of PyBullet's data. `mesh(name, urdf,
     packages)` returns the path of a mesh that a URDF file names (`find_mesh`); no mesh is opened.
@@ -62,6 +64,8 @@ class Library(UserCode):
     release: Callable[[Source], None] = lambda source: None
     policy: Policy = field(default_factory=Policy)
     bounds: Bounds = Bounds()
+    types: Aliases = field(default_factory=dict)
+    cpp_types: Mapping[str, CppClass] = field(default_factory=dict)
     robot: Callable[[str], Source | None] = lambda file: None
     mesh: Callable[[str, str, Packages], Path | None] = lambda name, urdf, packages: Path(name)
     expand: Callable[[str, Mapping[str, str], Packages], str] = no_xacro
@@ -124,6 +128,8 @@ def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
         robot=built_in.robot,
         ros=built_in.ros,
         bounds=built_in.bounds,
+        types=built_in.types,
+        cpp_types=built_in.cpp_types,
     )
 
 

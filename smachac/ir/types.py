@@ -39,7 +39,8 @@ class Type(NamedTuple):
     (T,))`, `one_of[a, b]` is `Type("one_of", ("a", "b"))`, the record `{x: T, y: U}` is
     `Type("record", ("x", T, "y", U))`; any other type is a name alone (`bool`, `Pose`,
     `geometry_msgs/Pose`). The bound of a text or list is its last argument: `str<=32` is
-    `Type("str", (32,))`, `list[T]<=8` is `Type("list", (T, 8))`.
+    `Type("str", (32,))`, `list[T]<=8` is `Type("list", (T, 8))`. The target `cpp` has its own types
+    beside these (targets/cpp): a record with its class, `Type("struct", ("Part", "x", T, "y", U))`.
     """
 
     name: str
@@ -62,6 +63,8 @@ class Type(NamedTuple):
             case "record", parts if parts:
                 pairs = zip(parts[::2], parts[1::2], strict=True)
                 return "{" + ", ".join(f"{_choice(name)}: {type_}" for name, type_ in pairs) + "}"
+            case (("struct" | "class"), (class_, *_)):
+                return str(class_).removeprefix("::")
             case name, (unit,):
                 return f"{name}<{unit}>"
         return self.name
@@ -115,6 +118,13 @@ class Bounds(NamedTuple):
 
     text: int = 0
     list: int = 0
+
+
+class CppClass(NamedTuple):
+    """A class of C++ for values of a type: its qualified name, and the header to include."""
+
+    name: str
+    header: str
 
 
 MOST_BOUND = 65535

@@ -160,7 +160,8 @@ def callbacks(here: Request) -> Iterable[Completion]:
 
 
 def types(here: Request) -> Iterable[Completion]:
-    named = [name for body in here.place.bodies[:1] for name in body.names("types")]
+    own = [name for body in here.place.bodies[:1] for name in body.names("types")]
+    named = dict.fromkeys([*own, *here.facts.library.types])
     return [Completion(word=word, kind="type") for word in [*named, *WORDS]]
 
 

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from itertools import chain
+from pathlib import PurePath
 from typing import NamedTuple, TypeAlias
 
 from smachac.batch import Batch, analyse_alone
@@ -22,6 +23,7 @@ from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, identit
 from smachac.diagnostics.repair import Certainty, Repair, edited_texts
 from smachac.diagnostics.source import Source
 from smachac.driver import Analysis, MachineCheck, analyse
+from smachac.frontend.config import PROJECT_FILES
 from smachac.frontend.loader import Library
 from smachac.frontend.text.yaml_mends import parse_mended
 from smachac.ir.nodes import Leaf, Machine
@@ -83,7 +85,7 @@ def clusters_of(
     found: list[Cluster] = []
     wanted = {identity(item) for item in shown}
     for name, known in batch.analyses.items():
-        mine = [item for item in known.report if identity(item) in wanted]
+        mine = [item for item in known.report if identity(item) in wanted and _is_tried(item)]
         most = MOST_CLUSTERS - len(found)
         if not most or all(item.severity is Severity.INFO for item in mine):
             continue
@@ -92,6 +94,11 @@ def clusters_of(
             found.append(cluster)
             wanted -= {identity(item) for item in (cluster.finding, *cluster.explained)}
     return (*found,)
+
+
+def _is_tried(item: Diagnostic) -> bool:
+    """Whether a trial can find a finding again: it does not read the project file."""
+    return PurePath(item.span.source.name).name not in PROJECT_FILES
 
 
 def again(analysis: Analysis, extra: MachineCheck | None = None) -> Again:

@@ -325,7 +325,20 @@ def project_schema(codes: Mapping[str, Code]) -> Schema:
         "additionalProperties": False,
         "properties": {"text": bound, "list": bound},
     }
-    shapes = {"severity": severity, "ros": {"enum": list(ROS_VERSIONS)}, "bounds": bounds}
+    type_: Schema = {"type": ["string", "object"]}
+    class_: Schema = {
+        "type": "object",
+        "additionalProperties": False,
+        "required": ["class", "header"],
+        "properties": {"class": {"type": "string"}, "header": {"type": "string"}},
+    }
+    shapes = {
+        "severity": severity,
+        "ros": {"enum": list(ROS_VERSIONS)},
+        "bounds": bounds,
+        "types": {"type": "object", "additionalProperties": type_},
+        "cpp_types": {"type": "object", "additionalProperties": class_},
+    }
     return {
         "$schema": DRAFT,
         "title": "The project file of smachac",

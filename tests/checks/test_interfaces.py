@@ -59,7 +59,7 @@ def stubs(grasp: str = BOTH, name: str = "Grasp") -> tuple[str, str]:
     """The code of a state type as smachac begins it, in Python and in C++."""
     type_ = find_state_type(name, memory_library({f"templates/{name}.yml": grasp}, BUILT_IN), [])
     assert type_ is not None
-    return stub(type_, "python"), stub(type_, "cpp")
+    return stub(type_, "python", BUILT_IN), stub(type_, "cpp", BUILT_IN)
 
 
 def judged(texts: Mapping[str, str], target_name: str | None = None) -> Report:
@@ -128,7 +128,7 @@ def test_a_stub_of_any_interface_is_what_that_says(wanted: NewStateType, languag
     text = interface(wanted, language)
     type_ = find_state_type("Grasp", memory_library({"templates/Grasp.yml": text}, BUILT_IN), [])
     assert type_ is not None
-    code = stub(type_, language)
+    code = stub(type_, language, BUILT_IN)
     texts = {"main.yml": machine(wanted), "templates/Grasp.yml": text}
     assert said({**texts, code_file("Grasp", language).removeprefix("include/"): code}) == []
 
@@ -152,7 +152,11 @@ def test_a_stub_of_another_interface_is_found(one: NewStateType, other: NewState
         type_ = find_state_type("Grasp", library, [])
         assert type_ is not None
         file = code_file("Grasp", language).removeprefix("include/")
-        texts = {"main.yml": machine(one), "templates/Grasp.yml": text, file: stub(type_, language)}
+        texts = {
+            "main.yml": machine(one),
+            "templates/Grasp.yml": text,
+            file: stub(type_, language, BUILT_IN),
+        }
         library = memory_library(texts, BUILT_IN)
         report = analyse(Source("main.yml", texts["main.yml"]), library, []).report
         differing = ("SM308", "SM309", "SM310", "SM603", "SM604")

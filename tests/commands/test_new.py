@@ -187,9 +187,9 @@ def test_names_of_files_and_keys() -> None:
     assert [file_stem(name) for name in ("Grasp", "GraspPart", "TF2Listener", "GoToXY")] == [
         "grasp", "grasp_part", "tf2_listener", "go_to_xy",
     ]  # fmt: skip
-    assert key_and_type("a=list[int]") == ("a", "list[int]")
+    assert key_and_type("a=list[int]", {}) == ("a", "list[int]")
     with pytest.raises(BadNameError):
-        key_and_type("=int")
+        key_and_type("=int", {})
 
 
 # --- states
@@ -383,3 +383,43 @@ def test_scenarios_are_of_outcomes_of_the_script(
     (errand / "main.yml").write_text("states: [")
     assert main(["new", "scenario", script]) == 1
     assert not (errand / "scenarios").exists()
+
+
+def test_a_stub_has_the_types_of_the_project(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    settings = "[types]\nPart = {name = 'str', at = 'Pose?'}\n"
+    (tmp_path / "smachac.toml").write_text(settings)
+    call = ["new", "state", "Take", "--input", "part=Part", "--output", "all=list[Part]"]
+    assert main(call) == 0
+    assert "  part: Part\n" in (tmp_path / "templates" / "Take.yml").read_text()
+    python = (tmp_path / "robot_states" / "take.py").read_text()
+    assert "# userdata.part: Part, which is {name: str, at: Pose?}\n" in python
+    assert main([*call, "--target", "cpp"]) == 0
+    text = (tmp_path / "include" / "robot_states" / "take.hpp").read_text()
+    assert '#include "smachac/types.hpp"\n' in text
+    assert "struct In { const smachac::types::Part &part; };" in text
+    capsys.readouterr()
+    assert main(["new", "state", "Drop", "--input", "part=Prt"]) == 2
+    assert "did you mean `Part`?" in capsys.readouterr().err
+    assert main(["new", "state", "Drop", "--target", "cpp", "--input", "part={a: int}"]) == 2
+    assert "under `[types]` of smachac.toml" in capsys.readouterr().err
+
+
+def test_a_stub_for_a_stepped_machine(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "smachac.toml").write_text("bounds = {text = 8}\n")
+    call = ["new", "state", "Take", "--target", "cpp", "--option", "mode=step"]
+    assert main([*call, "--input", "names=list[str]", "--output", "seen=str"]) == 0
+    text = (tmp_path / "include" / "robot_states" / "take.hpp").read_text()
+    assert "const smachac::step::List<smachac::step::TextOf<8>> &names; }" in text
+    assert "smachac::step::Key<smachac::step::Text> &seen; }" in text
+    assert "step(smachac::step::Context &context, In in, Out out) {" in text
+    capsys.readouterr()
+    assert main(["new", "state", "Drop", "--option", "mode=step"]) == 2
+    assert "--option is for `--target cpp`" in capsys.readouterr().err
+    assert main([*call[:-1], "mode=other"]) == 2
+    assert "`mode` must be `blocking` or `step`" in capsys.readouterr().err

@@ -231,8 +231,8 @@ def test_types_of_others_have_none() -> None:
         cpp_type(type_of("list[geometry_msgs/Pose]"))
 
 
-def test_records_have_none() -> None:
-    with pytest.raises(UnportableError, match=r"C\+\+ has no type for the record `{a: int}`"):
+def test_records_without_a_name_have_none() -> None:
+    with pytest.raises(UnportableError, match=r"C\+\+ needs a name for the record `{a: int}`"):
         cpp_type(type_of("list[{a: int}]"))
 
 

@@ -104,8 +104,8 @@ def test_a_wrong_header_is_found(
     script.write_text(ROUNDS, "utf-8")
     changed = []
 
-    def broken(planned: Plan) -> Header:
-        header = header_of(planned)
+    def broken(planned: Plan, *, with_records: bool = True) -> Header:
+        header = header_of(planned, with_records=with_records)
         changed.append(break_(header.text) != header.text)
         return header._replace(text=break_(header.text))
 

@@ -446,7 +446,12 @@ def _word_in(span: Span, word: str) -> Span:
 
 @problem("SM017", "bad-type", Severity.ERROR)
 def bad_type(
-    place: Word, known: Iterable[str], unknown: str = "", *, help: str | None = None
+    place: Word,
+    known: Iterable[str],
+    unknown: str = "",
+    *,
+    help: str | None = None,
+    where: str = "`types:`",
 ) -> Finding:
     """A type cannot be parsed, or contains the name of an unknown type.
 
@@ -487,7 +492,7 @@ def bad_type(
             span=_word_in(place.span, unknown),
             message=f"`{unknown}` is not a known type: its values are not checked",
             arguments=(place.text, unknown),
-            help=help or "declare it under `types:`, or write a type of ROS as `pkg/Name`",
+            help=help or f"declare it under {where}, or write a type of ROS as `pkg/Name`",
             severity=Severity.WARNING,
         )
     closed = _closed_type(place.text)

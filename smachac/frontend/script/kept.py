@@ -22,7 +22,7 @@ from smachac.frontend.script.params import Scope
 from smachac.frontend.script.unused import Uses
 from smachac.frontend.text.yaml_tree import Entry
 from smachac.frontend.types.state_types import find_state_type
-from smachac.frontend.types.type_annotations import Aliases
+from smachac.frontend.types.type_names import Aliases
 from smachac.ir.nodes import FixedParam, Preset, StateType
 from smachac.records import dataclass, field
 
@@ -74,7 +74,7 @@ class Kept:
 
     def state_type(self, name: str, library: Library, report: Report) -> StateType | None:
         """As `find_state_type`; the same object as before if the answers are the same."""
-        answers: Answers = []
+        answers: Answers = [library.types]
         before = len(report)
         found = find_state_type(name, _noted(library, answers), report)
         known = self.types.pop(name, None)

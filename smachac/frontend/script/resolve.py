@@ -98,11 +98,11 @@ from smachac.frontend.text.yaml_tree import (
 from smachac.frontend.types.state_types import find_state_type
 from smachac.frontend.types.type_annotations import (
     TYPED,
-    Aliases,
     explain_aliases,
     read_aliases,
     typed,
 )
+from smachac.frontend.types.type_names import Aliases
 from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.nodes import FixedParam, Preset, StateType
 from smachac.ir.robot import Robot
@@ -229,8 +229,9 @@ class _Resolver:
         self.main = source.name
         begin = self.uses.mark(self.report)
         entries = expanded(tree.entries, self.report)
+        self.aliases = self.library.types
         if "types" in entries:
-            self.aliases = read_aliases(entries["types"].value, self.report)
+            self.aliases = read_aliases(entries["types"].value, self.aliases, self.report)
         if self.kept is not None:
             self.kept.use_aliases(self.aliases)
         start = tree.entries[0].key.span if tree.entries else tree.span
@@ -239,8 +240,9 @@ class _Resolver:
         # A `robot` of a wrong shape was reported; the default robot must not replace it.
         is_wrong = base.robot is None and "robot" in entries
         robot = None if is_wrong else self._robot(base, source)
+        outer = self.library.types
+        self.uses.types |= explain_aliases(self.aliases, outer, source, self.report)
         if "types" in entries:
-            self.uses.types |= explain_aliases(self.aliases, source, self.report)
             self.uses.aliases(entries["types"].value, self.report)
         known = [type_ for type_ in self.types.values() if type_ is not None]
         classes = [type_.class_facts for type_ in known if type_.class_facts is not None]

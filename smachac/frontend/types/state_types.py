@@ -30,7 +30,7 @@ from smachac.frontend.types.interface_code import (
     python_code,
 )
 from smachac.frontend.types.interface_fields import interface_fields
-from smachac.frontend.types.type_annotations import as_record, read_type
+from smachac.frontend.types.type_annotations import as_record, read_type, with_types
 from smachac.frontend.types.type_classes import (
     ALL_GIVEN,
     class_facts,
@@ -116,7 +116,7 @@ def _read_interface(
     unclear = tree.get("io_keys") is not None  # reported; which keys are inputs is not known
     if "name" in fields:
         _check_own_name(fields["name"], name, report)
-    sections = {key: _section(key, fields.get(key), report) for key in _SECTIONS}
+    sections = _sections(fields, library, report)
     code = code_by_language(sections["code"], report)
     if "python" not in code and library.template(f"{name}.tpl.py") is not None:
         code["python"] = f"{name}.tpl.py"
@@ -169,6 +169,15 @@ def _read_interface(
         optional=optional,
         secret_keys=_secret_keys(sections, report),
     )
+
+
+def _sections(fields: Mapping[str, Tree], library: Library, report: Report) -> dict[str, Section]:
+    """The fields that are mappings of names, with the types of the project file in place of their
+    names."""
+    found = {key: _section(key, fields.get(key), report) for key in _SECTIONS}
+    for part in ("variables", "input_keys", "output_keys"):
+        found[part] = with_types(found[part], library.types)
+    return found
 
 
 def _outcomes(section: Section, report: Report) -> tuple[Outcome, ...]:
@@ -372,7 +381,8 @@ def _type(tree: Tree | None, report: Report) -> Type:
         report.append(wrong_shape(tree.span, message, help, arguments=("type", text)))
     if not isinstance(tree, Scalar) or not isinstance(tree.value, str):
         return ANY
-    return read_type(tree.value, Word(tree.value, tree.span), report) or ANY
+    word = Word(tree.value, tree.span)
+    return read_type(tree.value, word, report, "`[types]` of smachac.toml") or ANY
 
 
 def _variables(section: Section, report: Report) -> dict[str, VariableType]:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
-import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Report
@@ -13,51 +11,51 @@ from smachac.diagnostics.spelling import guesser_of, respelt
 from smachac.frontend.errors.script import Owner, bad_type, unknown_variable
 from smachac.frontend.text.fields import PRESET_FIELDS, as_pairs, is_long_form
 from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Tree, is_known_wrong
+from smachac.frontend.types.type_names import WORD, Aliases, field_name, filled
 from smachac.ir.types import WORDS, Type, parse_type, unknown_words
-
-Aliases = Mapping[str, str]
-"""The type of each alias, itself without aliases."""
 
 TYPED = ("input_keys", "output_keys", "userdata")
 """The fields that have types."""
 
-_WORD = re.compile(r"\b[A-Za-z_]\w*\b(?!\s*:)")
-"""A word of a type that is not the name of a field."""
 
-
-def read_aliases(tree: Tree, report: Report) -> Aliases:
-    """The `types:` of a script; an alias may use earlier ones."""
-    found: dict[str, str] = {}
+def read_aliases(tree: Tree, outer: Aliases, report: Report) -> Aliases:
+    """The `types:` of a script beside those of its project, `outer`; an alias may use earlier
+    ones."""
+    found = dict(outer)
     for key, value in as_pairs(_with_records(tree), report):
-        text = _filled(value.text, found)
+        text = filled(value.text, found)
         if read_type(text, value, report) is not None:
             found[key.text] = text
     return found
 
 
-def explain_aliases(aliases: Aliases, source: Source, report: Report) -> set[str]:
+def explain_aliases(aliases: Aliases, outer: Aliases, source: Source, report: Report) -> set[str]:
     """The names of aliases that other files than the script use as types, where they are unknown
-    (SM017): the help of these findings is the type to write there. For an unknown type in the
-    script it is the alias that is meant."""
-    guess = guesser_of(tuple(aliases))
+    (SM017): the help of these findings is the type to write there. For any other unknown type it is
+    the alias that is meant: in the script one of all, elsewhere one of the project, `outer`."""
     found: set[str] = set()
     for index, item in enumerate(report) if aliases else ():
         finding = item.finding
         unknown = finding.arguments[1] if item.code == "SM017" and finding.arguments[1:] else ""
         if unknown in aliases and finding.span.source is not source:
             found.add(unknown)
-            meant = _filled(finding.arguments[0], aliases)
-            help = f"an interface does not use the `types:` of a script: write `{meant}`"
+            meant = filled(finding.arguments[0], aliases)
+            help = f"an interface does not use the `types:` of a script: write `{meant}`,"
+            help += " or move the type to `[types]` of smachac.toml"
             report[index] = replace(item, finding=replace(finding, help=help))
-        elif unknown and finding.span.source is source and (near := guess.sure(unknown)):
+            continue
+        known = aliases if finding.span.source is source else outer
+        near = guesser_of(tuple(known)).sure(unknown) if unknown else None
+        if near:
             edits = respelt(Word(unknown, finding.span), near)
             help = f"did you mean `{near}`?"
             report[index] = replace(item, finding=replace(finding, help=help, edits=edits))
     return found
 
 
-def read_type(text: str, place: Word, report: Report) -> Type | None:
-    """The type that a text names; SM017 at `place` if it names none."""
+def read_type(text: str, place: Word, report: Report, where: str = "`types:`") -> Type | None:
+    """The type that a text names; SM017 at `place` if it names none. `where` are the names of
+    types that its file can use, for the help."""
     type_ = parse_type(text)
     if type_ is None:
         report.append(bad_type(place, WORDS))
@@ -68,7 +66,7 @@ def read_type(text: str, place: Word, report: Report) -> Type | None:
         meant = _fields_turned_back(type_, turned)
         name, type_name = next((pair for pair in turned if pair[0] == unknown[0]), ("", ""))
         help = f"write `{name}: {type_name}`: the name of the field comes first" if name else None
-        report.append(bad_type(place, WORDS, unknown[0], help=help))
+        report.append(bad_type(place, WORDS, unknown[0], help=help, where=where))
         type_ = meant if help else type_
     return type_
 
@@ -104,8 +102,7 @@ def as_record(tree: Tree) -> Tree:
         value = as_record(entry.value)
         if not isinstance(value, Scalar) or not isinstance(value.value, str):
             return tree
-        name = str(entry.key.value)
-        parts.append(f"{name if name.isidentifier() else json.dumps(name)}: {value.value}")
+        parts.append(f"{field_name(str(entry.key.value))}: {value.value}")
     return Scalar(f"{{{', '.join(parts)}}}", False, *tree.span)
 
 
@@ -126,6 +123,28 @@ def typed(key: str, entry: Entry, aliases: Aliases, report: Report) -> Entry:
     return Entry(entry.key, Map(items, value.span))
 
 
+def with_types(section: tuple[Entry, ...], aliases: Aliases) -> tuple[Entry, ...]:
+    """The keys or variables of an interface with the names in their types replaced."""
+    if not aliases:
+        return section
+    return tuple(Entry(entry.key, _in_interface(entry.value, aliases)) for entry in section)
+
+
+def _in_interface(tree: Tree, aliases: Aliases) -> Tree:
+    """`T`, or the `type` of a mapping, with the names in it replaced."""
+    if isinstance(tree, Map):
+        items = (
+            Entry(item.key, _in_interface(as_record(item.value), aliases))
+            if item.key.value == "type"
+            else item
+            for item in tree.entries
+        )
+        return Map(tuple(items), tree.span)
+    if isinstance(tree, Scalar) and isinstance(tree.value, str):
+        return Scalar(filled(tree.value, aliases), tree.plain, *tree.span)
+    return tree
+
+
 def type_words(key: str, tree: Tree) -> Iterator[str]:
     """The words in the types of a field."""
     if key not in TYPED or not isinstance(tree, Map):
@@ -144,7 +163,7 @@ def words_of(tree: Tree) -> list[str]:
     """The words of a type, as written."""
     tree = as_record(tree)
     if isinstance(tree, Scalar) and isinstance(tree.value, str):
-        return _WORD.findall(tree.value)
+        return WORD.findall(tree.value)
     return []
 
 
@@ -209,7 +228,7 @@ def _is_type(tree: Tree, aliases: Aliases) -> bool:
     tree = as_record(tree)
     if not isinstance(tree, Scalar) or not isinstance(tree.value, str):
         return False
-    type_ = parse_type(_filled(tree.value, aliases))
+    type_ = parse_type(filled(tree.value, aliases))
     return type_ is not None and not unknown_words(type_)
 
 
@@ -218,7 +237,7 @@ def _key_type(tree: Tree, aliases: Aliases, report: Report) -> Tree:
     reports it."""
     if isinstance(tree, Map) and tree.get("type") is not None:
         text = as_record(tree)
-        if isinstance(text, Scalar) and parse_type(_filled(str(text.value), aliases)) is None:
+        if isinstance(text, Scalar) and parse_type(filled(str(text.value), aliases)) is None:
             return tree
     return _type(tree, aliases, report)
 
@@ -227,10 +246,6 @@ def _type(tree: Tree, aliases: Aliases, report: Report) -> Tree:
     tree = as_record(tree)
     if not isinstance(tree, Scalar) or not isinstance(tree.value, str) or is_known_wrong(tree):
         return tree
-    text = _filled(tree.value, aliases)
+    text = filled(tree.value, aliases)
     read_type(text, Word(tree.value, tree.span), report)
     return Scalar(text, tree.plain, *tree.span)
-
-
-def _filled(text: str, aliases: Aliases) -> str:
-    return _WORD.sub(lambda found: aliases.get(found.group(), found.group()), text)

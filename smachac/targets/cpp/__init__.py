@@ -17,18 +17,26 @@ from smachac.targets import BuildContext, Files, Target, stem
 from smachac.targets.cpp.builtin_states import is_built_in
 from smachac.targets.cpp.declared_interface import declared
 from smachac.targets.cpp.header import header_of
+from smachac.targets.cpp.identifiers import member_identifier
 from smachac.targets.cpp.plan import Plan, plan
 from smachac.targets.cpp.project import OPTIONS, Project, project, project_files, runtime
+from smachac.targets.cpp.records import project_header, record_names, same_members
 from smachac.targets.cpp.robot_header import robot_file, robot_header
 from smachac.targets.cpp.step_classes import refuse_other_methods
 from smachac.targets.cpp.types import UnportableError
 from smachac.targets.cpp.user_classes import class_code, left_to_scripts
+from smachac.version import __version__
 
 
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """The header of a machine, `<name>.hpp`, that of its robot, and the files of the options."""
     wanted = project(context.options, context.library.bounds)
-    planned = plan(machine, wanted.bounds)
+    names = record_names(machine, context.library, stepped=wanted.bounds is not None)
+    planned = plan(machine, wanted.bounds, names)
+    for name, one, other in same_members(planned.names):
+        text = f"the fields `{one}` and `{other}` of `{name}` would both be named"
+        text += f" `{member_identifier(one)}`"
+        planned.refuse(machine.root.span, UnportableError(text), name, one, other)
     refuse_other_methods(planned, context.library)
     header = header_of(planned)
     robot = _robot_files(planned, wanted)
@@ -36,6 +44,10 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     if planned.report:
         return {}
     files = {wanted.path(f"{stem(machine)}.hpp"): header.text}
+    if planned.names.project:
+        made = f"Made by smachac {__version__} from the types of smachac.toml: do not edit."
+        text = project_header(planned.names, wanted.bounds, made)
+        files[wanted.path(planned.names.header)] = text
     return files | robot | project_files(machine, wanted, header)
 
 

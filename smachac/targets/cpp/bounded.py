@@ -11,7 +11,7 @@ The types in the second column exist only here. Other types are the same in both
 from __future__ import annotations
 
 from smachac.ir.types import MOST_BOUND, Bounds, Type, bound_of
-from smachac.targets.cpp.types import STR, UnportableError, plain
+from smachac.targets.cpp.types import STR, UnportableError, fields_of, plain
 
 
 def bounded(type_: Type, bounds: Bounds) -> Type:
@@ -35,7 +35,12 @@ def bounded(type_: Type, bounds: Bounds) -> Type:
             return Type("optional", (bounded(item, bounds),))
         case "PoseStamped", _:
             return Type("stamped", (_bound(type_, bounds.text, ""),))
-        case (("dict" | "record" | "JointState" | "any"), _):
+        case "struct", (str(class_), *parts):
+            fields = (bounded(part, bounds) if isinstance(part, Type) else part for part in parts)
+            return Type("struct", (class_, *fields))
+        case "class", _:
+            return type_
+        case (("dict" | "JointState" | "any"), _):
             raise UnportableError(
                 f"`{type_}` has no bound, and a stepped machine has no heap", help=_OTHER
             )
@@ -71,12 +76,23 @@ def loose(type_: Type) -> Type:
             return Type("list", (loose(item),))
         case (("array" | "optional"), (Type() as item, *rest)):
             return Type(type_.name, (loose(item), *rest))
+        case "struct", args:
+            return Type(
+                "struct", tuple(loose(arg) if isinstance(arg, Type) else arg for arg in args)
+            )
     return type_
 
 
 def is_loose(type_: Type) -> bool:
     """Whether the storage of a type has a bound that its type in expressions has not."""
     return loose(type_) != type_
+
+
+def has_bound(type_: Type) -> bool:
+    """Whether a text or list with a bound is in a stored type."""
+    return type_.name in ("text", "bounded", "stamped") or any(
+        has_bound(arg) for arg in type_.args if isinstance(arg, Type)
+    )
 
 
 def most_bytes(type_: Type) -> int:
@@ -93,6 +109,8 @@ def most_bytes(type_: Type) -> int:
             return _rounded(max(size, 1) * most_bytes(item))
         case "optional", (Type() as item,):
             return 8 + _rounded(most_bytes(item))
+        case "struct", _:
+            return sum(_rounded(most_bytes(part)) for part in fields_of(type_).values())
     return {"Point": 24, "Quaternion": 32, "Pose": 56, "Transform": 56, "bool": 1}.get(
         type_.name, 8
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from smachac.ir.types import Type
+from smachac.targets.cpp.identifiers import member_identifier
 from smachac.targets.cpp.literals import mapped
 from smachac.targets.cpp.operators import orderable, real, whole
 from smachac.targets.cpp.terms import (
@@ -34,7 +35,7 @@ from smachac.targets.cpp.types import (
     LISTED,
     STR,
     UnportableError,
-    cpp_type,
+    fields_of,
 )
 
 Named = Mapping[str, Term]
@@ -50,9 +51,23 @@ def item(owner: Term, place: Term) -> Term:
         found = FLOAT if kind.name in LISTED[:2] else found
         if found is not None:
             return fixed(found, call("item", owner.present(), whole(place).text))
-    if kind.name == "record":
-        cpp_type(kind)  # raises the reason
+    if kind.name == "struct" and isinstance(place.constant, str):
+        return _field(owner, kind, place.constant)
     raise UnportableError(f"`{shown(kind)}` has no items with the index type `{shown(index)}`")
+
+
+def _field(owner: Term, struct: Type, name: str) -> Term:
+    """A field of a record. Python fails where an optional field is absent, and has None where it is
+    null: C++ does not tell these apart."""
+    fields = fields_of(struct)
+    if name not in fields:
+        raise UnportableError(f"`{struct}` has no field `{name}`, only {', '.join(fields)}")
+    if fields[name].name == "optional":
+        raise UnportableError(f"`{name}` of `{struct}` may be absent", help=_OPTIONAL_FIELD)
+    return fixed(fields[name], call("field", f"{owner.present()}.{member_identifier(name)}"))
+
+
+_OPTIONAL_FIELD = "declare the field without `?`, or write a class in C++ for the state"
 
 
 def item_of(given: list[Term]) -> Type:

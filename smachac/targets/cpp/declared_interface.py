@@ -29,6 +29,7 @@ from smachac.targets.cpp.constructors import (
 )
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.member_faults import WRONG_PARAMETERS, member_faults, signature_faults
+from smachac.targets.cpp.records import project_names
 from smachac.targets.cpp.types import UnportableError
 from smachac.targets.cpp.user_classes import (
     REFUSED,
@@ -104,6 +105,10 @@ def declared(type_: StateType, library: Library) -> Declared | None:
     source = library.code(code.header) if code is not None else None
     if code is None:
         return None
+    try:
+        type_ = project_names(library).state_type(type_)
+    except UnportableError:
+        return None  # a record without a name: the target refuses the key
     if source is None:
         header = Word(code.header, type_.class_spans.get(("cpp", "header"), NOWHERE))
         return _absent(

@@ -38,6 +38,7 @@ from smachac.ir.types import Type
 from smachac.records import dataclass, field
 from smachac.targets.cpp import builtin_functions, literals, operators
 from smachac.targets.cpp.dialect import BLOCKING, STEPPED, Dialect
+from smachac.targets.cpp.literals import stored
 from smachac.targets.cpp.terms import (
     AND,
     BOOL,
@@ -50,7 +51,6 @@ from smachac.targets.cpp.terms import (
     Term,
     call,
     converted,
-    convertible,
     fixed,
     ground,
     has,
@@ -120,17 +120,9 @@ def cpp_bounded(expr: Expr, names: Mapping[str, Spelling], wanted: Type) -> Prin
     inner = _KnownNames(spellings=names)
     term = _term(expr, inner)
     try:
-        if not convertible(term.type, wanted):
-            converted(CppText(""), term.type, wanted)  # raises the reason
-        if term.type.name in ("list", "tuple") and has(term.type, "never"):
-            return Printed(text=EMPTY, type=wanted, uses_names=False)
-        return _printed(term.spell(term.type).text, wanted, inner, STEPPED)
+        return _printed(stored(term, wanted), wanted, inner, STEPPED)
     except UnportableError as error:
         raise _located(expr, error) from error
-
-
-EMPTY = "std::array<std::int64_t, 0>{}"
-"""An empty list, for a list of any items."""
 
 
 def cpp_condition(

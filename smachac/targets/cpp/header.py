@@ -20,6 +20,7 @@ from smachac.targets.cpp.builtin_states import LeafCode, built_in, enumeration
 from smachac.targets.cpp.containers import ContainerPlan, Lines, execute, parts, results
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import OWN, ContainerScope, Plan, member, place, scope_name
+from smachac.targets.cpp.records import key_types, script_structs
 from smachac.targets.cpp.step_containers import RESERVED, StepPlan, requests, states_members, step
 from smachac.targets.cpp.step_machine import machine_class, node_table
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value
@@ -54,9 +55,9 @@ class Header(NamedTuple):
     classes: tuple[str, ...]
 
 
-def header_of(plan: Plan) -> Header:
+def header_of(plan: Plan, *, with_records: bool = True) -> Header:
     """The header of a machine. Everything that C++ cannot express is added to the plan's report;
-    the header is empty then."""
+    the header is empty then. `with_records`: with the structs for the types of the script."""
     numbers = {path: number for number, (path, _) in enumerate(walk(plan.machine.root))}
     printing = _Printing(plan=plan, classes=_classes(plan.machine), numbers=numbers)
     if plan.report and plan.bounds is not None:
@@ -71,7 +72,11 @@ def header_of(plan: Plan) -> Header:
         return Header("", (), ())
     codes = list(printing.classes.values())
     runtime = "smachac/step.hpp" if plan.dialect.stepped else "smachac/smachac.hpp"
-    headers = sorted({runtime, *(code.header for code in codes)})
+    types = [type_ for scope in plan.scopes.values() for type_ in scope.keys.values()]
+    types += [type_ for code in codes for type_ in key_types(code.type)]
+    records = script_structs(plan.names, plan.bounds, types) if with_records else []
+    included = [runtime, *(code.header for code in codes), *plan.names.headers(types)]
+    headers = sorted({*included, *([plan.names.header] if plan.names.project else [])})
     classes = tuple(header for header in headers if not header.startswith("smachac/"))
     made = f"// {made_by(plan.machine)}\n#pragma once"
     includes = "\n".join(f'#include "{header}"' for header in headers)
@@ -79,6 +84,7 @@ def header_of(plan: Plan) -> Header:
     catching = next((node for _, node in walk(plan.machine.root) if node.catches), None)
     if catching is not None and not plan.dialect.stepped:
         includes += f"\n\n{_needs_exceptions(catching)}"
+    blocks = [*records, *blocks]
     if codes:
         blocks = [STRICT, *checks, *blocks, LENIENT]
     text = "\n\n".join([made, includes, *blocks]) + "\n"

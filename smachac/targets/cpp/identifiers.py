@@ -53,12 +53,18 @@ def identifier(name: str) -> str:
     Letters lose their accents; other letters become their Unicode numbers. Two names may get one
     identifier; `clashes` finds them.
     """
+    word = member_identifier(name)
+    return f"{word}_" if word in OURS else word
+
+
+def member_identifier(name: str) -> str:
+    """The identifier for the field of a record: beside the fields there are no names of ours."""
     text = name if name.isascii() else "".join(map(_ascii, name))
     word = re.sub(r"[^0-9A-Za-z]+", "_", text)
     word = word.strip("_") or "_"
     if word[0].isdigit():
         word = f"n{word}"
-    taken = word in KEYWORDS or word in OURS or MACROS.fullmatch(word)
+    taken = word in KEYWORDS or MACROS.fullmatch(word)
     return f"{word}_" if taken else word
 
 

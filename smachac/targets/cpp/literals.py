@@ -7,15 +7,27 @@ from smachac.targets.cpp.terms import (
     NEVER,
     CppText,
     Term,
+    call,
     converted,
+    convertible,
     cpp,
     ground,
+    has,
     inside,
     joined,
+    present,
     shown,
     size_of,
 )
-from smachac.targets.cpp.types import FIELDS, LISTED, STR, UnportableError, braced
+from smachac.targets.cpp.types import (
+    FIELDS,
+    LISTED,
+    STR,
+    UnportableError,
+    braced,
+    check_fields,
+    fields_of,
+)
 
 
 def listed(items: list[Term], kind: str) -> Term:
@@ -70,6 +82,8 @@ def mapped(entries: list[tuple[Term, Term]]) -> Term:
     def spell(wanted: Type) -> CppText:
         if wanted.name == "optional":
             return converted(spell(inside(wanted)), inside(wanted), wanted)
+        if wanted.name == "struct":
+            return _struct_of_record(wanted, {str(key.constant): value for key, value in entries})
         if wanted.name in ("PoseStamped", "JointState"):
             return _record(wanted, {str(key.constant): value for key, value in entries})
         if wanted.name != "dict":
@@ -78,6 +92,30 @@ def mapped(entries: list[tuple[Term, Term]]) -> Term:
         return CppText(braced(cpp(wanted), pairs if apart else pairs[::-1]))
 
     return Term(type=own, spell=spell)
+
+
+def _struct_of_record(wanted: Type, given: dict[str, Term]) -> CppText:
+    """The struct of a record, from the mapping that scripts write for it."""
+    check_fields(given, wanted)
+    fields = fields_of(wanted)
+    values = [stored(given[name], fields[name]) if name in given else "smachac::None{}"
+              for name in sorted(fields)]  # fmt: skip
+    return call(f"made<{cpp(wanted)}>", *values)
+
+
+def stored(term: Term, wanted: Type) -> str:
+    """The text of a value that an assignment converts to a type. Raises UnportableError."""
+    if present(wanted).name == "struct":
+        return term.spell(wanted).text
+    if not convertible(term.type, wanted):
+        converted(CppText(""), term.type, wanted)  # raises the reason
+    if term.type.name in ("list", "tuple") and has(term.type, "never"):
+        return EMPTY
+    return term.text()
+
+
+EMPTY = "std::array<std::int64_t, 0>{}"
+"""An empty list, for a list of any items."""
 
 
 def _record(wanted: Type, given: dict[str, Term]) -> CppText:

@@ -14,7 +14,7 @@ from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, Node, StateType
 from smachac.ir.script_paths import script_paths
 from smachac.ir.secret_keys import secret_keys
-from smachac.ir.traversal import OuterNames, containers, outcome_names, remapping
+from smachac.ir.traversal import OuterNames, containers, outcome_names, remapping, walk
 from smachac.ir.types import ANY, Bounds, Type
 from smachac.records import dataclass, field
 from smachac.targets import comment
@@ -22,6 +22,7 @@ from smachac.targets.cpp.bounded import bounded, loose
 from smachac.targets.cpp.dialect import BLOCKING, FAULT, STEPPED, Dialect
 from smachac.targets.cpp.expressions import Spelling
 from smachac.targets.cpp.identifiers import clashes, identifier, outermost
+from smachac.targets.cpp.records import RecordNames
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, plain
 from smachac.targets.errors import unsupported_by_target
 
@@ -104,9 +105,10 @@ class ContainerScope:
 class Plan:
     """A machine with its scopes by path, parents before children; `report` holds the refusals.
     `paths` are the paths of the script by full path, where they differ: events have them. `bounds`
-    are those of a stepped machine; a blocking one has none."""
+    are those of a stepped machine; a blocking one has none. `names` are those of the records."""
 
     machine: Machine
+    names: RecordNames
     scopes: Mapping[str, ContainerScope]
     paths: Mapping[str, str]
     report: Report = field(default_factory=list)
@@ -123,13 +125,15 @@ class Plan:
         self.report.append(unsupported_by_target(span, "C++", str(error), help, names))
 
 
-def plan(machine: Machine, bounds: Bounds | None = None) -> Plan:
+def plan(machine: Machine, bounds: Bounds | None = None, names: RecordNames | None = None) -> Plan:
     """The plan of a machine; names and types that C++ cannot express are refused. `bounds` make it
-    a stepped one."""
+    a stepped one; `names` are those of records."""
     scopes: dict[str, ContainerScope] = {}
     paths = script_paths(machine.root)
-    found = Plan(machine=machine, scopes=scopes, paths=paths, bounds=bounds)
+    names = names or RecordNames(stepped=bounds is not None)
+    found = Plan(machine=machine, names=names, scopes=scopes, paths=paths, bounds=bounds)
     keys = _types(found)
+    machine = found.machine = replace(machine, state_types=_state_types(found))
     secret = secret_keys(machine)
     catching: set[str] = set()
     for path, node in containers(machine.root):
@@ -157,15 +161,31 @@ def _types(found: Plan) -> Mapping[str, Mapping[str, Type]]:
     nodes = dict(containers(found.machine.root))
     keys: dict[str, dict[str, Type]] = {}
     for (path, key), type_ in sorted(infer(found.machine).keys.items(), key=lambda item: item[0]):
-        stored = plain(type_)
-        if found.bounds is not None:
-            try:
-                stored = bounded(type_, found.bounds)
-            except UnportableError as error:
-                refused = UnportableError(f"the key `{key}`: {error}", help=error.help)
-                found.refuse(_place_of(nodes[path], key), refused, key)
+        stored = ANY
+        try:
+            named = found.names.with_structs(type_)
+            stored = plain(named) if found.bounds is None else bounded(named, found.bounds)
+        except UnportableError as error:
+            refused = UnportableError(f"the key `{key}`: {error}", help=error.help)
+            found.refuse(_place_of(nodes[path], key), refused, key)
         keys.setdefault(path, {})[key] = stored
     return keys
+
+
+def _state_types(found: Plan) -> dict[str, StateType]:
+    """The state types with structs in place of records. A record without a name is refused at the
+    first state whose class needs one."""
+    types = dict(found.machine.state_types)
+    for name, type_ in types.items():
+        try:
+            types[name] = found.names.state_type(type_)
+        except UnportableError as error:
+            if "cpp" in type_.classes:
+                leaf = next(node for _, node in walk(found.machine.root) if node.type == name)
+                found.refuse(
+                    leaf.span, UnportableError(f"`{name}`: {error}", help=error.help), name
+                )
+    return types
 
 
 def _sure(node: Container, around: ContainerScope | None) -> frozenset[str]:

@@ -34,7 +34,7 @@ SEQUENCES = ("list", "array", "tuple", "range")
 STRING = "std::string"
 """The type of a text in blocking machines."""
 
-SURE = frozenset(["contains", "equal", "length", "real", "truth", "with"])
+SURE = frozenset(["contains", "equal", "field", "length", "real", "truth", "with"])
 """The operations that cannot fail in a stepped machine."""
 
 UNBOUNDED_CALLS = frozenset(["characters", "keys", "range", "repeat", "sorted", "text"])
@@ -196,7 +196,10 @@ def shown(type_: Type) -> str:
 
 
 def has(type_: Type, name: str) -> bool:
-    """Whether a type is, or has in it, one of that name."""
+    """Whether a type is, or has in it, one of that name. Fields of records are not looked at: these
+    have a class."""
+    if type_.name == "struct":
+        return name == "struct"
     return type_.name == name or any(has(a, name) for a in type_.args if isinstance(a, Type))
 
 

@@ -7,6 +7,7 @@
 | `T[N]`                | `std::array<T, N>`            |
 | `dict[str, T]`        | `std::map<std::string, T>`    |
 | `T?`                  | `std::optional<T>`            |
+| records with a name   | structs, see records.py       |
 | `Pose` and its like   | structs of smachac/values.hpp |
 | `any`                 | `std::any`                    |
 | `none`                | `smachac::None`               |
@@ -20,7 +21,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from smachac.ir.nodes import Data, Expression, Struct
 from smachac.ir.types import STRUCTS, Type
@@ -55,7 +56,10 @@ mappings."""
 
 LISTED = ("Point", "Quaternion", "Pose", "Transform")
 
-OTHER_TYPES = "declare the key as `any`, which is a `std::any` in C++; a class can cast its value"
+OTHER_TYPES = (
+    "name its class in C++ under `[cpp_types]` of smachac.toml; or declare the key as `any`, which"
+    " is a `std::any` in C++"
+)
 """The help for a type that C++ lacks, such as a message of ROS."""
 
 SCALARS = {
@@ -102,11 +106,26 @@ def cpp_type(type_: Type) -> str:
             return f"smachac::step::ListOf<{cpp_type(item)}, {size}>"
         case "stamped", (int(size),):
             return f"smachac::step::PoseStampedOf<{size}>"
+        case (("struct" | "class"), (str(class_), *_)):
+            return class_
     if type_.name == "record":
-        message = f"C++ has no type for the record `{type_}`"
-        raise UnportableError(message, help="declare the key as `dict[str, T]` or `any` for C++")
+        raise UnportableError(f"C++ needs a name for the record `{type_}`")
     message = f"the members of the type `{type_}` are unknown"
     raise UnportableError(message, help=OTHER_TYPES)
+
+
+def fields_of(struct: Type) -> dict[str, Type]:
+    """The fields of a struct of a record and their types."""
+    _, *parts = struct.args
+    return dict(
+        zip(map(str, parts[::2]), (p for p in parts[1::2] if isinstance(p, Type)), strict=True)
+    )
+
+
+def without_classes(type_: Type) -> Type:
+    """A type with records in place of their structs."""
+    args = [without_classes(arg) if isinstance(arg, Type) else arg for arg in type_.args]
+    return Type("record", (*args[1:],)) if type_.name == "struct" else Type(type_.name, (*args,))
 
 
 def plain(type_: Type) -> Type:
@@ -149,6 +168,8 @@ def _value(data: Data, type_: Type) -> str:
             return f"{cpp_type(type_)}{{}}"
         case "optional", _:
             return f"{cpp_type(type_)}{{{_value(data, _inside(type_))}}}"
+        case "class", None:  # an object of the user's class, as traces show it
+            return f"{cpp_type(type_)}{{}}"
         case "none", None:
             return "smachac::None{}"
         case "bool", bool():
@@ -172,8 +193,8 @@ def _value(data: Data, type_: Type) -> str:
             return f"{cpp_type(type_)}{{{', '.join(_members(data, 'PoseStamped', fields))}}}"
         case name, tuple() | Struct() if name in FIELDS:
             return f"{cpp_type(type_)}{{{', '.join(_members(data, name))}}}"
-    if type_.name == "record":
-        cpp_type(type_)  # raises the reason
+        case "struct", Struct():
+            return _record(data, type_)
     raise UnportableError(f"{_shown(data)} is not of the type `{type_}`")
 
 
@@ -252,6 +273,33 @@ def _members(
         _value(given[key], part) if key in given else f"{cpp_type(part)}{{}}"
         for key, part in fields.items()
     ]
+
+
+def _record(data: Struct, type_: Type) -> str:
+    """A struct of a record from the mapping in the script."""
+    given, fields = dict(data.entries), fields_of(type_)
+    check_fields(given, type_)
+    for name, value in given.items():
+        if value is None and fields[name].name == "optional":
+            raise UnportableError(
+                f"C++ does not tell null from an absent field: leave out `{name}`"
+            )
+    values = [
+        _value(given[name], fields[name]) if name in given else f"{cpp_type(fields[name])}{{}}"
+        for name in sorted(fields)
+    ]
+    return f"smachac::constant<{cpp_type(type_)}>({', '.join(values)})"
+
+
+def check_fields(given: Iterable[str], struct: Type) -> None:
+    """Refuses a record with other fields than a struct has, or without one that it needs."""
+    fields, given = fields_of(struct), list(given)
+    unknown = [name for name in given if name not in fields]
+    if unknown:
+        raise UnportableError(f"`{struct}` has no field `{unknown[0]}`, only {', '.join(fields)}")
+    for name, part in fields.items():
+        if name not in given and part.name != "optional":
+            raise UnportableError(f"the field `{name}` of `{struct}` is missing")
 
 
 def _computed(expression: Expression) -> Data:

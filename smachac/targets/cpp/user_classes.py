@@ -10,11 +10,18 @@ from smachac.ir.nodes import Data, Key, Leaf, StateType
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.types import Bounds, Type
 from smachac.records import dataclass
-from smachac.targets.cpp.bounded import bounded, loose
+from smachac.targets.cpp.bounded import bounded, has_bound, loose
 from smachac.targets.cpp.builtin_states import STOP, LeafCode
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import ContainerScope, converts
-from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value, plain
+from smachac.targets.cpp.types import (
+    UnportableError,
+    cpp_literal,
+    cpp_type,
+    cpp_value,
+    plain,
+    without_classes,
+)
 
 REFUSED = "the C++ compiler refuses the class"
 """The effect of most faults of a class in C++."""
@@ -116,7 +123,7 @@ def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope, number: int =
     def hidden(key: Key) -> str:
         return ", true" if names[key.name] in scope.secret else ""
 
-    made = [*map(argument, code.parameters), *_variables(type_, leaf)]
+    made = [*map(argument, code.parameters), *_variables(type_, leaf, scope.bounds)]
     if scope.bounds is not None:
         for part, keys in (("In", type_.input_keys), ("Out", type_.output_keys)):
             step_fields(part, keys, scope.bounds)  # raises the reason
@@ -130,7 +137,7 @@ def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope, number: int =
             bounded_outputs=tuple(
                 (out, cpp_literal(key.name))
                 for key, out in zip(type_.output_keys, outs, strict=True)
-                if scope.key(names[key.name]).name in ("text", "bounded")
+                if has_bound(scope.key(names[key.name]))
             ),
             written=tuple(
                 f"{cpp_literal(key.name)}, {out}{hidden(key)}"
@@ -220,18 +227,35 @@ def _output(scope: ContainerScope, key: Key, outer: str) -> str:
     return scope.object(outer)
 
 
-def _variables(type_: StateType, leaf: Leaf) -> list[str]:
+def _variables(type_: StateType, leaf: Leaf, bounds: Bounds | None) -> list[str]:
     """The arguments for the variables of the interface, in its order, with its defaults."""
     set_: dict[str, Data] = {variable.name: variable.value.data for variable in leaf.variables}
     found = []
     for name, variable in type_.variables.items():
         if name not in set_ and variable.default is not None:
             set_[name] = variable.default.data
+        value = set_.get(name)
         try:
-            found.append(cpp_value(set_.get(name), plain(variable.type)))
+            wanted = (
+                variable.type if bounds is None else _constant_type(variable.type, value, bounds)
+            )
+            found.append(cpp_value(value, wanted))
         except UnportableError as error:
-            raise UnportableError(f"the variable `{name}`: {error}") from error
+            raise UnportableError(f"the variable `{name}`: {error}", help=error.help) from error
     return found
+
+
+def _constant_type(type_: Type, value: Data, bounds: Bounds) -> Type:
+    """The storage of a constant in a stepped machine: a text or list is as large as its value.
+    Raises UnportableError for a type without a bound in it."""
+    match type_.name, type_.args, value:
+        case "str", _, str():
+            return Type("text", (len(value.encode("utf-8", "surrogatepass")),))
+        case "list", (Type() as item, *_), tuple():
+            return Type("bounded", (bounded(item, bounds), len(value)))
+        case "optional", (Type() as item,), _:
+            return Type("optional", (_constant_type(item, value, bounds),))
+    return bounded(type_, bounds)
 
 
 def step_field_type(part: str, type_: Type) -> str:
@@ -249,6 +273,11 @@ def step_field_type(part: str, type_: Type) -> str:
     return text if type_.name in (*BY_VALUE, "text") else f"const {text} &"
 
 
+def step_parameter_type(type_: Type, bounds: Bounds) -> str:
+    """The type of a parameter for a constant in a stepped machine. Raises UnportableError."""
+    return step_field_type("In", _stored(type_, bounds))
+
+
 def parameter_type(type_: Type) -> str:
     """The type of a parameter for a value of a type."""
     text = cpp_type(type_)
@@ -264,13 +293,18 @@ def interface_hash(type_: StateType) -> str:
     """A hash of all parts of an interface that its class depends on."""
     parts = [
         type_.name,
-        *(f"var {name} {plain(variable.type)}" for name, variable in type_.variables.items()),
-        *(f"in {key.name} {plain(key.type)}" for key in type_.input_keys),
-        *(f"out {key.name} {plain(key.type)}" for key in type_.output_keys),
+        *(f"var {name} {_written(variable.type)}" for name, variable in type_.variables.items()),
+        *(f"in {key.name} {_written(key.type)}" for key in type_.input_keys),
+        *(f"out {key.name} {_written(key.type)}" for key in type_.output_keys),
         *(f"outcome {outcome.name}" for outcome in type_.outcomes),
         f"stop {stops(type_)}",
     ]
     return f"0x{zlib.crc32(chr(10).join(parts).encode()):08x}U"
+
+
+def _written(type_: Type) -> str:
+    """A type as the interface has it: records with their fields, whatever the class in C++."""
+    return str(plain(without_classes(type_)))
 
 
 def step_fields(part: str, keys: Iterable[Key], bounds: Bounds) -> dict[str, str]:

@@ -17,9 +17,11 @@ from typing import IO, NamedTuple
 
 import smachac
 from smachac.diagnostics.diagnostic import Report
+from smachac.frontend.loader import Library
 from smachac.ir.nodes import Machine
 from smachac.ir.types import Bounds
 from smachac.targets.cpp.plan import plan
+from smachac.targets.cpp.records import scripted_names
 from smachac.targets.cpp.types import UnportableError
 from smachac.verify.players.cpp_program import Program
 from smachac.verify.players.cpp_step_program import StepProgram
@@ -38,14 +40,16 @@ MOST_ERRORS = 5
 """Limit on the lines of compiler output that are shown."""
 
 
-def player(machine: Machine, report: Report, bounds: Bounds | None = None) -> Player:
+def player(
+    machine: Machine, report: Report, bounds: Bounds | None = None, library: Library | None = None
+) -> Player:
     """A player of the generated C++ code. Adds to `report` what C++ cannot express of the machine.
-    `bounds` are those of a stepped machine.
+    `bounds` are those of a stepped machine; `library` has the classes of C++ for types.
 
     The program is compiled when the player receives test cases. Raises UnplayableError if there is
     no compiler, or if the compilation fails.
     """
-    planned = plan(machine, bounds)
+    planned = plan(machine, bounds, scripted_names(machine, library, stepped=bounds is not None))
     make = Program if bounds is None else StepProgram
     report.extend(make(planned, ()).refused())
 

@@ -16,6 +16,7 @@ from pathlib import Path, PurePosixPath
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
+from smachac.frontend.loader import Library
 from smachac.ir.nodes import Leaf, Machine, Node
 from smachac.ir.traversal import outcome_names, own_outcomes, walk
 from smachac.ir.types import Type
@@ -24,6 +25,7 @@ from smachac.runtime.tracing.writer import with_shown_paths
 from smachac.targets.cpp.builtin_states import built_in, enumeration
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import ContainerScope, Plan, member, place, plan, scope_name
+from smachac.targets.cpp.records import key_types, record_names
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_value, plain, script_data
 from smachac.targets.cpp.user_classes import (
     ClassCode,
@@ -46,14 +48,14 @@ _PLAIN_NAME = re.compile(r"(?:(?P<space>[A-Za-z_][\w:]*)::)?(?P<name>[A-Za-z_]\w
 
 
 def file_player(
-    source: Source, machine: Machine, report: Report, *, folders: Sequence[Path]
+    source: Source, machine: Machine, library: Library, report: Report, *, folders: Sequence[Path]
 ) -> Player:
     """A player of a C++ header on disk, which may include headers from `folders`.
 
     Adds to `report` what C++ cannot express of the machine. Raises UnplayableError, with the place
     in the file, if the header has other states or outcomes than the script, or does not compile.
     """
-    planned = plan(machine)
+    planned = plan(machine, names=record_names(machine, library))
     report.extend(Program(planned, ()).refused())
 
     def play(cases: Sequence[TestCase]) -> Iterator[list[Event]]:
@@ -127,6 +129,7 @@ class _Header:
         self._source = source
         self._machine = planned.machine
         self._scopes = planned.scopes
+        self._names = planned.names
         self._cases = cases
         self._found = scopes(source)
         self._stand_ins: dict[str, _StandIn] = {}
@@ -325,7 +328,12 @@ class _Header:
             path = folder / name
             path.parent.mkdir(parents=True, exist_ok=True)
             text = [line for stand_ins in classes.values() for line in _class(stand_ins)]
-            lines = ["#pragma once", '#include "smachac/smachac.hpp"', *text]
+            types = (code.type for ins in classes.values() if (code := ins[0].code) is not None)
+            own = self._names.headers(
+                text_type for type_ in types for text_type in key_types(type_)
+            )
+            included = (f'#include "{file}"' for file in ("smachac/smachac.hpp", *own))
+            lines = ["#pragma once", *included, *text]
             path.write_text("\n".join(lines) + "\n", "utf-8")
 
 

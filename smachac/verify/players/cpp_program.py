@@ -25,6 +25,7 @@ from smachac.targets.cpp.builtin_states import enumeration
 from smachac.targets.cpp.header import header_of
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import ContainerScope, Plan, place, scope_name
+from smachac.targets.cpp.records import project_structs
 from smachac.targets.cpp.types import cpp_literal, cpp_type, cpp_value, plain, script_data
 from smachac.targets.cpp.user_classes import interface_hash, parameter_type
 from smachac.verify.guidance import possible_leaf_outcomes
@@ -79,7 +80,8 @@ class Program:
             for number, live in enumerate(self._stages)
         ]
         spaces = ["namespace verify {", *leaves, "} // namespace verify"]
-        return "\n".join([play, *spaces, *machines, *self._main()])
+        records = project_structs(self._plan.names, None)
+        return "\n".join([play, *records, *spaces, *machines, *self._main()])
 
     def refused(self) -> Report:
         """What C++ cannot express of the machine. The code of its states matters only if test cases
@@ -113,7 +115,7 @@ class Program:
         }
         report = list(self._plan.report)
         planned = replace(self._plan, machine=machine, scopes=scopes, paths={}, report=report)
-        lines = header_of(planned).text.splitlines()
+        lines = header_of(planned, with_records=False).text.splitlines()
         text = "\n".join(line for line in lines if not line.startswith("#"))
         return text, in_order(planned.report)
 

@@ -18,6 +18,7 @@ from smachac.targets.cpp.bounded import loose
 from smachac.targets.cpp.builtin_states import enumeration
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import ContainerScope, Plan, place, scope_name
+from smachac.targets.cpp.records import project_structs
 from smachac.targets.cpp.types import cpp_literal, cpp_value, script_data
 from smachac.targets.cpp.user_classes import interface_hash, step_field_type
 from smachac.verify.players.cpp_program import CppLeaf, Program
@@ -55,6 +56,7 @@ class StepProgram(Program):
 
     def parts(self) -> Iterator[str]:
         """The code of the leaves and machines, and the function that runs all test cases."""
+        yield from project_structs(self._plan.names, self._plan.bounds)
         yield f"namespace verify::{self.name} {{"
         yield from (leaf.text(self._reads) for leaf in self._leaves.values())
         yield "}"
@@ -232,4 +234,7 @@ def _written(type_: Type) -> Type:
             return Type("list", (_written(item), size))
         case (("array" | "optional"), (Type() as item, *rest)):
             return Type(type_.name, (_written(item), *rest))
+        case "struct", parts:
+            fields = (_written(part) if isinstance(part, Type) else part for part in parts)
+            return Type("struct", tuple(fields))
     return loose(type_)

@@ -15,10 +15,52 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
+#include <utility>
 
 namespace smachac {
 inline namespace v0_1_0 {
+
+/// For the class of a record of a script: `names` are its fields, sorted, and `members(value)` is
+/// the std::tuple of references to them.
+template <class T> struct Fields : std::false_type {};
+
+/// Whether a type is a class of the user whose members smachac does not know.
+template <class T> struct Opaque : std::false_type {};
+
+namespace detail {
+
+/// Calls `function(name, member)` for each field of a record.
+template <class T, class F, std::size_t... At>
+void each_field(T &value, F &&function, std::index_sequence<At...>) {
+  auto members = Fields<std::remove_const_t<T>>::members(value);
+  (function(Fields<std::remove_const_t<T>>::names[At], std::get<At>(members)), ...);
+}
+template <class T> constexpr std::size_t count_fields() {
+  return std::tuple_size_v<decltype(Fields<T>::members(std::declval<T &>()))>;
+}
+template <class T, class F> void each_field(T &value, F &&function) {
+  constexpr std::size_t count = count_fields<std::remove_const_t<T>>();
+  each_field(value, function, std::make_index_sequence<count>());
+}
+/// Calls `function(member, other)` for the members of a record and as many other values.
+template <class A, class B, class F, std::size_t... At>
+void each_pair(A &&members, B &&others, F &&function, std::index_sequence<At...>) {
+  (function(std::get<At>(members), std::get<At>(others)), ...);
+}
+
+} // namespace detail
+
+/// A record with these values of its fields, in the order of `Fields<T>::names`.
+template <class T, class... Values> T constant(const Values &...values) {
+  T found{};
+  detail::each_pair(
+      Fields<T>::members(found), std::tie(values...),
+      [](auto &member, const auto &value) { member = value; },
+      std::make_index_sequence<sizeof...(Values)>());
+  return found;
+}
 
 /// The type of None.
 struct None {
@@ -375,6 +417,13 @@ template <class A, class B> bool equal(const A &a, const B &b) {
       const auto other = b.find(one->first);
       same = other != b.end() && equal(one->second, other->second);
     }
+    return same;
+  } else if constexpr (std::is_same_v<A, B> && Fields<A>::value) {
+    bool same = true;
+    detail::each_pair(
+        Fields<A>::members(a), Fields<A>::members(b),
+        [&same](const auto &one, const auto &other) { same = same && equal(one, other); },
+        std::make_index_sequence<detail::count_fields<A>()>());
     return same;
   } else if constexpr (std::is_same_v<A, B> ||
                        (detail::is_text<A>::value && detail::is_text<B>::value)) {

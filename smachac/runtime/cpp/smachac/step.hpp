@@ -380,7 +380,8 @@ public:
   }
   /// The result of a step; a failure if the state has gone over the bound of an output.
   template <class T> int within_bound(int result, Key<T> &key, const char *name) {
-    return key.is_over() ? over(key, name) : result;
+    const bool searched = any_went_over.load(std::memory_order_relaxed);
+    return searched && key.exceeded() ? over(name) : result;
   }
 
   /// The failure of a state.
@@ -456,8 +457,7 @@ private:
       recall(container);
     }
   }
-  template <class T> [[gnu::cold, gnu::noinline]] int over(Key<T> &key, const char *name) {
-    key.went_over();
+  [[gnu::cold, gnu::noinline]] int over(const char *name) {
     context.fail("a value beyond its bound", name);
     return FAILED;
   }

@@ -7,6 +7,7 @@
 #define SMACHAC_STEP_VALUES_HPP
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -54,6 +55,10 @@ private:
 
 // Texts and lists
 
+/// Whether a text or list of this program was ever given more than its bound. Until then, no output
+/// is searched for one: a list of texts would cost each step some instructions for each text.
+inline std::atomic<bool> any_went_over{false};
+
 /// A text with a bound: at most `capacity()` bytes of UTF-8. Its storage is in a TextOf or a Key.
 class Text {
 public:
@@ -92,9 +97,11 @@ public:
     assign(text);
     return *this;
   }
+  /// A copy of a text that went over its bound counts as such a text too.
   Text &operator=(const Text &text) {
     if (this != &text) {
       assign(text.view());
+      over_ = over_ || text.over_;
     }
     return *this;
   }
@@ -107,8 +114,9 @@ protected:
       : data_(data), capacity_(static_cast<std::uint16_t>(capacity)) {}
 
 private:
-  bool over() {
+  [[gnu::cold]] bool over() {
     over_ = true;
+    any_went_over.store(true, std::memory_order_relaxed);
     return false;
   }
 
@@ -124,10 +132,14 @@ public:
   TextOf() : Text(storage_, N) {}
   TextOf(std::string_view text) : TextOf() { assign(text); }   // NOLINT: `TextOf<8> side{"left"}`
   TextOf(const char *text) : TextOf(std::string_view(text)) {} // NOLINT
-  TextOf(const TextOf &text) : TextOf(text.view()) {}
+  TextOf(const TextOf &text) : TextOf() { Text::operator=(text); }
   ~TextOf() = default;
   TextOf &operator=(const TextOf &text) {
     Text::operator=(text);
+    return *this;
+  }
+  TextOf &operator=(const char *text) {
+    assign(text);
     return *this;
   }
   using Text::operator=;
@@ -165,8 +177,7 @@ public:
   /// fails.
   bool push_back(const T &item) {
     if (size_ == capacity_) {
-      over_ = true;
-      return false;
+      return over();
     }
     data_[size_++] = item;
     return true;
@@ -176,16 +187,18 @@ public:
   void replace(std::size_t i, const T &item) { data_[i] = item; }
   void resize(std::size_t size) { size_ = static_cast<std::uint16_t>(size); }
   void clear() { size_ = 0; }
+  /// A copy of a list that went over its bound counts as such a list too.
   List &operator=(const List &list) {
     if (this != &list) {
       assign(list);
+      over_ = over_ || list.over_;
     }
     return *this;
   }
   /// Sets all items from another sequence, which may have more of them than the bound.
   template <class Items> void assign(const Items &items) {
     if (items.size() > capacity_) {
-      over_ = true;
+      over();
       return;
     }
     size_ = 0;
@@ -202,6 +215,12 @@ protected:
       : data_(data), capacity_(static_cast<std::uint16_t>(capacity)) {}
 
 private:
+  [[gnu::cold]] bool over() {
+    over_ = true;
+    any_went_over.store(true, std::memory_order_relaxed);
+    return false;
+  }
+
   T *data_;
   std::uint16_t size_ = 0;
   std::uint16_t capacity_;
@@ -213,7 +232,7 @@ template <class T, std::size_t N> class ListOf : public List<T> {
 public:
   ListOf() : List<T>(storage_, N) {}
   ListOf(std::initializer_list<T> items) : ListOf() { this->assign(items); }
-  ListOf(const ListOf &list) : ListOf() { this->assign(list); }
+  ListOf(const ListOf &list) : ListOf() { List<T>::operator=(list); }
   ~ListOf() = default;
   ListOf &operator=(const ListOf &list) {
     List<T>::operator=(list);
@@ -234,6 +253,9 @@ template <std::size_t N> struct PoseStampedOf {
   }
   friend bool operator!=(const PoseStampedOf &a, const PoseStampedOf &b) { return !(a == b); }
 };
+
+template <class T> struct is_stamped : std::false_type {};
+template <std::size_t N> struct is_stamped<PoseStampedOf<N>> : std::true_type {};
 
 } // namespace step
 
@@ -319,6 +341,33 @@ template <class To, class From> To convert(Fault &fault, const From &from) {
   return found;
 }
 
+/// Whether a text or list in a value was given more than its bound since the last call.
+template <class T> bool went_over(T &value) {
+  if constexpr (smachac::detail::is_text<T>::value) {
+    return value.is_over() && value.went_over();
+  } else if constexpr (smachac::detail::is_array<T>::value || smachac::detail::is_list<T>::value) {
+    bool found = false;
+    if constexpr (!smachac::detail::is_array<T>::value) {
+      found = value.is_over() && value.went_over();
+    }
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      found = went_over(value[i]) || found;
+    }
+    return found;
+  } else if constexpr (smachac::detail::is_optional<T>::value) {
+    return value.has_value() && went_over(*value);
+  } else if constexpr (Fields<T>::value) {
+    bool found = false;
+    smachac::detail::each_field(
+        value, [&found](const char *, auto &member) { found = went_over(member) || found; });
+    return found;
+  } else if constexpr (is_stamped<T>::value) {
+    return went_over(value.frame_id);
+  } else {
+    return false;
+  }
+}
+
 // Keys
 
 namespace detail {
@@ -338,6 +387,8 @@ public:
     state_ = KeyState::written;
     return own().value();
   }
+  /// Whether a part of the value was given more than its bound since the last call.
+  bool exceeded() { return step::went_over(own().value()); }
   /// Writes the value of a state.
   template <class U> void write(Fault &fault, const char *name, const U &value) {
     set_to(fault, name, value, KeyState::written);
@@ -532,6 +583,20 @@ template <class T> decltype(auto) viewed(const T &value) {
   } else {
     return (value);
   }
+}
+
+/// A field of a record.
+template <class T> decltype(auto) field(const T &member) { return viewed(member); }
+
+/// A record with these values of its fields, as `put` converts them, in the order of
+/// `Fields<T>::names`.
+template <class T, class... Values> T made(Fault &fault, const Values &...values) {
+  T found{};
+  smachac::detail::each_pair(
+      Fields<T>::members(found), std::tie(values...),
+      [&fault](auto &member, const auto &value) { put(fault, member, value); },
+      std::make_index_sequence<sizeof...(Values)>());
+  return found;
 }
 
 template <class T> auto present(Fault &fault, const std::optional<T> &value) {
@@ -772,6 +837,23 @@ template <class T> void write_json(const Sink &sink, const T &value) {
     list(value.position, value.orientation);
   } else if constexpr (std::is_same_v<T, Transform>) {
     list(value.translation, value.rotation);
+  } else if constexpr (Fields<T>::value) {
+    const char *before = "{\"";
+    smachac::detail::each_field(value, [&](const char *name, const auto &member) {
+      if constexpr (smachac::detail::is_optional<std::decay_t<decltype(member)>>::value) {
+        if (!member.has_value()) {
+          return;
+        }
+      }
+      sink(before);
+      write_escaped(sink, name);
+      sink("\": ");
+      write_json(sink, member);
+      before = ", \"";
+    });
+    sink(before[0] == '{' ? "{}" : "}");
+  } else if constexpr (Opaque<T>::value) {
+    sink("null");
   } else {
     sink("{\"frame_id\": ");
     write_json(sink, value.frame_id);

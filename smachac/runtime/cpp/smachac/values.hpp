@@ -129,6 +129,15 @@ template <class From> std::any anything([[maybe_unused]] const From &from) {
     return std::any(convert<std::vector<std::any>>(from));
   } else if constexpr (is_dict<From>::value) {
     return std::any(convert<std::map<std::string, std::any>>(from));
+  } else if constexpr (Fields<From>::value) {
+    std::map<std::string, std::any> found;
+    each_field(from, [&found](const char *name, const auto &member) {
+      std::any value = anything(member);
+      if (value.has_value()) {
+        found.emplace(name, std::move(value));
+      }
+    });
+    return std::any(std::move(found));
   } else {
     return std::any(from);
   }
@@ -193,6 +202,21 @@ template <class To, class From> To convert([[maybe_unused]] const From &from) {
 }
 
 namespace py {
+
+/// A field of a record.
+template <class T> const T &field(const T &member) { return member; }
+
+/// A record with these values of its fields, converted, in the order of `Fields<T>::names`.
+template <class T, class... Values> T made(const Values &...values) {
+  T found{};
+  detail::each_pair(
+      Fields<T>::members(found), std::tie(values...),
+      [](auto &member, const auto &value) {
+        member = convert<std::decay_t<decltype(member)>>(value);
+      },
+      std::make_index_sequence<sizeof...(Values)>());
+  return found;
+}
 
 using checked::equal;
 using checked::length;
@@ -580,6 +604,20 @@ template <Style style, class T> bool write(std::string &out, const T &value) {
     fine = write_entry<style>(out, ", ", "position", value.position) && fine;
     fine = write_entry<style>(out, ", ", "velocity", value.velocity) && fine;
     out += '}';
+  } else if constexpr (Fields<T>::value) {
+    const char *before = "{";
+    detail::each_field(value, [&](const char *name, const auto &member) {
+      if constexpr (detail::is_optional<std::decay_t<decltype(member)>>::value) {
+        if (!member.has_value()) {
+          return;
+        }
+      }
+      fine = write_entry<style>(out, before, name, member) && fine;
+      before = ", ";
+    });
+    out += before[0] == '{' ? "{}" : "}";
+  } else if constexpr (Opaque<T>::value) {
+    return write<style>(out, None{});
   } else {
     static_assert(std::is_same_v<T, std::any>, "smachac cannot write values of this type");
     fine = write_any<style>(out, value);
