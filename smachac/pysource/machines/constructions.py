@@ -83,8 +83,8 @@ class Construction:
     """How a state is made. `cls` is its class; None if no other module can import it, for the
     reason `obstacle`. `library` is the name of a class of SMACH that the code uses itself, `short`
     a name for the state type. `types` are the types of ROS in the arguments, by the parameter:
-    `std_srvs/SetBool`. `file` has the class, `cls_span` is its place. `node`: the first argument
-    was the node of ROS 2."""
+    `std_srvs/SetBool`. `file` has the class, `cls_span` is its place, `doc` the first line of its
+    docstring. `node`: the first argument was the node of ROS 2."""
 
     span: Span
     cls: ClassPlace | None = None
@@ -94,6 +94,7 @@ class Construction:
     arguments: tuple[Argument, ...] = ()
     types: Mapping[str, str] = field(default_factory=dict)
     file: str = ""
+    doc: str = ""
     node: bool = False
     cls_span: Span | None = field(default=None, compare=False)
 
@@ -227,6 +228,7 @@ class _Reader:
             span=span, cls=place, short=cls.name, obstacle=obstacle,
             arguments=self._arguments(made, around), file=file,
             cls_span=self.evaluator.span(cls.node, cls.frame),
+            doc=(ast.get_docstring(cls.node) or "").strip().partition("\n")[0].strip(),
         )  # fmt: skip
 
     def _class_place(self, cls: Class) -> tuple[ClassPlace | None, str]:

@@ -218,7 +218,9 @@ def _split(
 def _interface(made: ImportedType) -> str:
     """The text of an interface."""
     leaf = made.leaf
-    lines = [f"name: {name_text(made.name)}", f"doc: {quoted(f'Imported from {made.place}.')}"]
+    own = made.construction.doc
+    doc = f"{own} ({made.place})" if own else f"Imported from {made.place}."
+    lines = [f"name: {name_text(made.name)}", f"doc: {quoted(doc)}"]
     if made.variables:
         needed = {
             name: "{}" if count == made.states else "{default: null}"

@@ -4,6 +4,11 @@ import smach
 
 
 class Dock(smach.State):
+    """Drives to the dock.
+
+    It tries three times.
+    """
+
     def __init__(self):
         smach.State.__init__(self, outcomes=['docked', 'missed'])
         self.tries = 0
