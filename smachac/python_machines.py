@@ -77,10 +77,13 @@ class PythonFile:
 class PythonProject:
     """Reads Python files of repositories; modules that several files import are read once.
     `cached`: what is known from the last run is used, without the graphs, and kept for the next
-    one by `keep`."""
+    one by `keep`. `assumed` are the values of conditions that are not known, by their code."""
 
-    def __init__(self, disk: Disk, *, cached: bool = False) -> None:
+    def __init__(
+        self, disk: Disk, *, cached: bool = False, assumed: Mapping[str, bool] | None = None
+    ) -> None:
         self.disk = disk
+        self.assumed = assumed
         self.cached = cached
         self.caches: dict[str, Cache] = {}
         self.repositories: dict[tuple[str, bool], tuple[Repository, Evaluator, ClassReader]] = {}
@@ -151,6 +154,11 @@ class PythonProject:
             path=path, source=source, graphs=tuple(whole), report=found, coverage=coverage
         )
 
+    def used_assumptions(self) -> frozenset[str]:
+        """The conditions that were not known and whose assumed values were needed."""
+        known = (evaluator.used for _, evaluator, _ in self.repositories.values())
+        return frozenset().union(*known)
+
     def keep(self) -> None:
         """Writes what is known for the next run."""
         for cache in self.caches.values():
@@ -172,7 +180,7 @@ class PythonProject:
         key = os.path.realpath(root), everything
         if key not in self.repositories:
             repository = Repository(map(str, python_files(root)), self._text)
-            evaluator = Evaluator(repository)
+            evaluator = Evaluator(repository, self.assumed)
             reader = ClassReader(repository, whole=everything)
             self.repositories[key] = repository, evaluator, reader
         return self.repositories[key]

@@ -29,6 +29,8 @@ EXAMPLES = """\
 examples:
   smachac import machine.py -o project                write the scripts of all machines in the file
   smachac import machine.py -o project --machine Tour    only those of one machine
+  smachac import machine.py -o project --assume "'--fast' in sys.argv=false"
+                                                      the branch of an `if` that is not known
   smachac check project/main.yml                      then: find the errors in the script
   smachac build project/main.yml --target python      and generate its program
 
@@ -47,10 +49,29 @@ def import_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", type=as_path, default=".", metavar="DIR",
                         help="the folder of the project (default: the current one)")  # fmt: skip
     machine_name(parser)
+    parser.add_argument("--assume", type=_assumption, action="append", default=[],
+                        metavar="CONDITION=VALUE",
+                        help="the value, `true` or `false`, of a condition in the code that is not"
+                        " known (repeatable)")  # fmt: skip
     quiet(parser)
     memory_limit(parser)
     time_limit(parser)
     colour(parser)
+
+
+def _assumption(text: str) -> tuple[str, bool]:
+    """A condition, as `ast.unparse` writes it, and its value."""
+    import ast
+
+    from smachac.ir.python_code import parse_code
+
+    code, _, value = text.rpartition("=")
+    if value not in ("true", "false"):
+        raise argparse.ArgumentTypeError(f"`{text}` does not end with `=true` or `=false`")
+    try:
+        return ast.unparse(parse_code(code)), value == "true"
+    except SyntaxError:
+        raise argparse.ArgumentTypeError(f"`{code}` is no condition of Python") from None
 
 
 def import_command(arguments: Namespace) -> int:
@@ -65,13 +86,16 @@ def import_command(arguments: Namespace) -> int:
         return usage(f"{path} is no Python file")
     try:
         with limited_memory(arguments.memory_limit), limited_time(arguments.time_limit):
-            made = import_python(path, arguments.output, Disk(), arguments.machine)
+            assumed = dict(arguments.assume)
+            made = import_python(path, arguments.output, Disk(), arguments.machine, assumed)
     except CpuTimeError as error:
         print(error, file=sys.stderr)
         return FINDINGS
     if made.file.coverage is None:
         print_report(without_notes(made.file.report), arguments, sys.stderr)
         return FINDINGS
+    for code in made.vain:
+        return usage(f"--assume: {path} has no condition `{code}` that is not known")
     if not made.names and arguments.machine is not None and made.all_names:
         message = f"{path} has no machine `{arguments.machine}`"
         return usage(message, arguments.machine, made.all_names)
@@ -84,7 +108,8 @@ def import_command(arguments: Namespace) -> int:
               file=sys.stderr)  # fmt: skip
         for span, reason in machine.unknown:
             print(f"  --> {_place(span)}: {reason}", file=sys.stderr)
-        print("help: `smachac docs existing` shows how to make them known", file=sys.stderr)
+        print("help: `--assume 'CONDITION=true'` selects a branch; `smachac docs existing` shows"
+              " how to make the rest known", file=sys.stderr)  # fmt: skip
     return _put(made, arguments) if made.texts else FINDINGS
 
 

@@ -291,6 +291,56 @@ def test_refused_files(
     assert not Path("project").exists()
 
 
+CONDITION = """\
+import smach, sys
+
+class Do(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=['ok'])
+
+    def execute(self, userdata):
+        return 'ok'
+
+sm = smach.StateMachine(outcomes=['ok'])
+with sm:
+    sm.add('A', Do(), {'ok': 'B' if ('--b' in sys.argv) else 'C'})
+    if '--b' in sys.argv:
+        sm.add('B', Do(), {'ok': 'C'})
+    sm.add('C', Do())
+"""
+
+
+@pytest.mark.parametrize(
+    ("value", "proof"), [("true", "3 states, 3 transitions"), ("false", "2 states, 2 transitions")]
+)
+def test_assumed_conditions(
+    value: str, proof: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    Path("machine.py").write_text(CONDITION, "utf-8")
+    assert main(["import", "machine.py", "-o", "project"]) == 1
+    assert "--assume" in capsys.readouterr().err
+    condition = f'"--b" in sys.argv={value}'
+    assert main(["import", "machine.py", "-o", "project", "--assume", condition]) == 0
+    assert proof in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("text", ["x", "x=1", "x y=true", "=true", "'--c' in sys.argv=true"])
+def test_wrong_assumptions(
+    text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("machine.py").write_text(CONDITION, "utf-8")
+    try:
+        code = main(["import", "machine.py", "-o", "project", "--assume", text])
+    except SystemExit as ended:
+        code = int(ended.code or 0)
+    assert code == 2
+    assert "--assume" in capsys.readouterr().err
+    assert not Path("project").exists()
+
+
 @pytest.mark.parametrize(("arguments", "words"), [
     (["main.yml"], "main.yml is no Python file"),
     (["machine.py", "--machine", "Toru"], "machine.py has no machine `Toru`\ndid you mean `Tour`?"),

@@ -101,10 +101,13 @@ class _Region:
 class Evaluator:
     """Evaluates modules, functions and classes; `made` are the objects of SMACH's classes in the
     order in which they were made, `called` the functions that were called, `generators` whether one
-    of them is a generator. `exhausted`: a part of the file took too many steps."""
+    of them is a generator. `exhausted`: a part of the file took too many steps. `assumed` are the
+    values of conditions that are not known, by their code, `used` those that were needed."""
 
-    def __init__(self, project: Project) -> None:
+    def __init__(self, project: Project, assumed: Mapping[str, bool] | None = None) -> None:
         self.project = project
+        self.assumed = assumed or {}
+        self.used: set[str] = set()
         self.heap = Heap()
         self.steps = 0
         self.limit = MOST_STEPS
@@ -251,10 +254,20 @@ class Evaluator:
     def _branch(
         self, test: ast.expr, body: Sequence[ast.stmt], orelse: Sequence[ast.stmt], frame: Frame
     ) -> Completion | None:
-        known = truth(self.value(test, frame))
+        known = self._truth(test, frame)
         if known is not None:
             return self.block(body if known else orelse, frame)
         return self.choice([lambda: self.block(body, frame), lambda: self.block(orelse, frame)])
+
+    def _truth(self, test: ast.expr, frame: Frame) -> bool | None:
+        """The truth value of a condition, or that which is assumed; None: not known."""
+        known = truth(self.value(test, frame))
+        if known is not None or not self.assumed:
+            return known
+        code = ast.unparse(test)
+        if code in self.assumed:
+            self.used.add(code)
+        return self.assumed.get(code)
 
     def choice(self, branches: Sequence[Callable[[], Completion | None]]) -> Completion | None:
         """Evaluates branches of which one is taken, and joins the states after them."""
@@ -912,7 +925,7 @@ class Evaluator:
             case ast.Compare():
                 return self._comparison(node, frame)
             case ast.IfExp(test=test, body=body, orelse=orelse):
-                known = truth(self.value(test, frame))
+                known = self._truth(test, frame)
                 if known is not None:
                     return self.value(body if known else orelse, frame)
                 return self._either([body, orelse], frame)

@@ -66,7 +66,8 @@ class Incomplete:
 class Imported:
     """The project of a Python file: the texts by path, what was not taken over, the proofs, and the
     machines that are not known as a whole. `names` are those of the machines that were wanted,
-    `all_names` those of all machines of the file."""
+    `all_names` those of all machines of the file. `vain` are assumed conditions that the file does
+    not have, or whose values are known."""
 
     file: PythonFile
     texts: Mapping[str, str] = field(default_factory=dict)
@@ -75,20 +76,29 @@ class Imported:
     incomplete: Sequence[Incomplete] = ()
     names: Sequence[str] = ()
     all_names: Sequence[str] = ()
+    vain: Sequence[str] = ()
 
 
-def import_python(path: Path, folder: Path, disk: Disk, wanted: str | None = None) -> Imported:
+def import_python(
+    path: Path, folder: Path, disk: Disk, wanted: str | None = None,
+    assumed: Mapping[str, bool] | None = None,
+) -> Imported:  # fmt: skip
     """The scripts of the machines in a Python file, as they will be in a folder; only of the one
-    that is `wanted`. Nothing is written."""
+    that is `wanted`. `assumed` are the values of conditions that are not known, by their code.
+    Nothing is written."""
     built: list[Built] = []
-    file = PythonProject(disk).read(path, built=built)
+    project = PythonProject(disk, assumed=assumed)
+    file = project.read(path, built=built)
+    vain = [code for code in assumed or () if code not in project.used_assumptions()]
     machines, incomplete = _machines(built)
     all_names = [*(machine.label for machine in machines), *(one.name for one in incomplete)]
     machines = [machine for machine in machines if wanted in (None, machine.label)]
     incomplete = [machine for machine in incomplete if wanted in (None, machine.name)]
     names = [*(machine.name for machine in machines), *(one.name for one in incomplete)]
     if not machines:
-        return Imported(file=file, incomplete=incomplete, names=names, all_names=all_names)
+        return Imported(
+            file=file, incomplete=incomplete, names=names, all_names=all_names, vain=vain
+        )
     ros = max(machine.constructions.ros for machine in machines)
     made = script_files(machines, folder, ros, _built_in_names())
     made.lost += _lost_in_modules(made, file, disk)
@@ -102,7 +112,7 @@ def import_python(path: Path, folder: Path, disk: Disk, wanted: str | None = Non
     lost = sorted(made.lost, key=lambda item: (item.span.source.name, item.span.start, item.text))
     return Imported(
         file=file, texts=texts, lost=lost, proofs=proofs, incomplete=incomplete, names=names,
-        all_names=all_names,
+        all_names=all_names, vain=vain,
     )  # fmt: skip
 
 
