@@ -249,8 +249,8 @@ class _Writer:
                 fields["output_keys"] = keys_text(leaf.outputs)
             return fields
         type_, variables = self.types.of(leaf, construction)
-        given = {name_text(name): scope.value(part, self) for name, part in variables.items()}
-        return {"template": type_, **given}
+        values = {name_text(name): scope.value(part, self) for name, part in variables.items()}
+        return {"template": type_, **values}
 
     def call_fields(self, names: Names, node: Container, scope: _Scope) -> dict[str, str]:
         """The call of the sub-script for a container of a class of the user."""
