@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 
 from smachac.commands.cli import main
+from smachac.frontend import schema
 from smachac.frontend.files import Disk
 from smachac.ir.nodes import Key, Leaf, Node, Outcome
 from smachac.pysource.machines import evaluator
@@ -497,9 +498,21 @@ for name in wanted:
 """
 
 
+NAMED = [
+    *schema.VARIABLES, *schema.LONG, "robot", "timeout", "type", "uuid", "class_name", "arguments",
+    "body", "parent_name",
+]  # fmt: skip
+"""Names of parameters that scripts or templates use too."""
+
+
 @pytest.mark.parametrize(
     "added",
     [
+        "".join(
+            f"Many({name}='x'), {{'a': 'S{at}'}})\n        sm.add('S{at}', "
+            for at, name in enumerate(dict.fromkeys(NAMED))
+        )
+        + "Many()",
         *(
             f"Given({text}), {{'a': 'B'}})\n        sm.add('B', Given({text}, t=1)"
             for text in ARGUMENTS

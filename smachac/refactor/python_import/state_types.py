@@ -56,13 +56,11 @@ OUTCOMES = {
     "ConditionState": ("true", "false", "preempted"),
 }
 
-_FIELDS = frozenset(schema.names_for("state")) - frozenset(["timeout", "retry", "for_each"])
+_USABLE = frozenset(["robot", "timeout", "retry", "for_each"])
+"""Fields whose names a state type can give to its variables."""
 
-RESERVED = frozenset({
-    *_FIELDS, *(short for short, long in schema.LONG.items() if long in _FIELDS),
-    "callbacks", "cb",
-})  # fmt: skip
-"""Words that no variable of a state type can have as its name: fields of a state."""
+RESERVED = frozenset({*schema.VARIABLES, *schema.LONG, "callbacks", "cb"}) - _USABLE
+"""Words that no variable of a state type has as its name: fields of scripts."""
 
 
 def is_optional(key: Key) -> bool:
