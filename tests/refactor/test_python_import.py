@@ -32,7 +32,8 @@ from tests.support.import_runs import python3
 
 CASES = Path(__file__).parents[1] / "import_cases"
 MACHINES = {
-    "actions": "sm", "callbacks": "Waiter().machine", "concurrence": "sm", "functions": "build()",
+    "actions": "sm", "callbacks": "Waiter().machine", "concurrence": "sm",
+    "container_classes": "build()", "functions": "build()",
     "literal": "main()", "loop": "ring()", "modules": "main()", "python2": "@sm", "rare": "sm",
     "subclass": "Tour(None)", "userdata": "sm", "variables": "sm",
 }  # fmt: skip
@@ -395,6 +396,20 @@ def test_no_code_is_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPat
     main(["import", "machine.py", "-o", "project", "-q"])
     assert Path("project/main.yml").exists()
     assert not trace.exists()
+
+
+def test_one_object_at_two_places_is_listed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("machine.py").write_text(
+        "import smach\nsm = smach.StateMachine(outcomes=['a'])\none = smach.State(outcomes=['a'])\n"
+        "with sm:\n    sm.add('A', one, {'a': 'B'})\n    sm.add('B', one)\n",
+        "utf-8",
+    )
+    main(["import", "machine.py", "-o", "project"])
+    found = capsys.readouterr().out
+    assert "machine.py:6:5: `B` and `A` are one object, and two in a program\n" in found
 
 
 ODD_NAMES = ["on", "a: b", "1", "#x", "null", "Grüße", "\U0001f600", "- x", "it's", '"', "`x`"]

@@ -90,6 +90,7 @@ def made(file: Path, expression: str, smach: Any) -> Any:
     """The machine that the code in a file makes, or that it runs first."""
     sys.path.insert(0, str(file.parent))
     module = types.ModuleType("__main__" if expression.startswith("@") else file.stem)
+    module.__file__ = str(file)
     sys.modules[file.stem] = module
     execute = smach.StateMachine.execute
 

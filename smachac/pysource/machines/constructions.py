@@ -119,7 +119,8 @@ class Callbacks:
 class Constructions:
     """The constructions of the states of a machine, the values that their userdata has first, the
     items of iterators, and the callbacks of concurrences, each by the path of names. `registered`
-    are the calls that register other functions of containers, by their names. `modules` are
+    are the calls that register other functions of containers, by their names, `shared` the paths of
+    states that are one object with the state of an earlier path, and their places. `modules` are
     those that the classes and the code need, each with the folder in which Python has to search
     it. `ros` is the version of ROS that the code imports; 0: none."""
 
@@ -128,6 +129,7 @@ class Constructions:
     items: Mapping[Names, Argument]
     callbacks: Mapping[Names, Callbacks]
     registered: tuple[tuple[str, Span], ...]
+    shared: tuple[tuple[Names, Names, Span], ...]
     modules: Mapping[str, str]
     ros: int = 0
 
@@ -173,9 +175,22 @@ class _Reader:
                 callbacks[names] = self._callbacks(node, made)
         return Constructions(
             states=states, userdata=userdata, items=items, callbacks=callbacks,
-            registered=tuple(dict.fromkeys(registered)),
+            registered=tuple(dict.fromkeys(registered)), shared=tuple(self._shared()),
             modules=dict(sorted(self.modules.items())), ros=self._ros(states),
         )  # fmt: skip
+
+    def _shared(self) -> Iterator[tuple[Names, Names, Span]]:
+        """The states that are one object, without those in a container that is."""
+        first: dict[Instance, Names] = {}
+        found: set[Names] = set()
+        for names, node in with_names(self.graph.machine.root):
+            made = self.graph.objects.get(names)
+            if made is None or names[:-1] in found:
+                found |= {names} if names[:-1] in found else set()
+                continue
+            if first.setdefault(made, names) != names:
+                found.add(names)
+                yield first[made], names, node.span
 
     def _ros(self, states: Mapping[Names, Construction]) -> int:
         """The version of ROS: that of the client library which the code imports."""
@@ -358,14 +373,20 @@ class _Reader:
         if node is None or around is None or around.made_by is None:
             return ""
         maker = self._maker(around)
-        given = around.made_by.arguments
-        names = self._parameters(around)
-        bound = dict(zip(names, given.positional, strict=False)) | dict(given.named)
+        bound = self._bound(around)
         for here in self.origins.of(node, frame):
             found = self.origins.parameter(here)
             if found is not None and found.me is around and found.function is maker:
                 return found.name if bound.get(found.name) is value else ""
         return ""
+
+    def _bound(self, made: Instance) -> dict[str, Value]:
+        """The arguments of a constructor that have a name."""
+        if made.made_by is None:
+            return {}
+        given = made.made_by.arguments
+        names = self._parameters(made)
+        return dict(zip(names, given.positional, strict=False)) | dict(given.named)
 
     def _code(
         self, value: Value, node: ast.expr | None, frame: Frame
@@ -436,14 +457,19 @@ class _Reader:
         for key, part in pairs.values() if isinstance(pairs, Mapping) else ():
             if isinstance(key, Const) and isinstance(key.value, str):
                 span = getattr(part, "span", None) or place
-                yield self._without_code(key.value, part, span)
+                yield self._without_code(key.value, part, span, around)
 
-    def _without_code(self, name: str, value: Value, span: Span) -> Argument:
-        """A value that is no argument of a call."""
+    def _without_code(
+        self, name: str, value: Value, span: Span, around: Instance | None
+    ) -> Argument:
+        """A value that is no argument of a call; of a container class it can be one of its
+        constructor."""
         data, code = _plain(value, span), None
         if data is UNWRITTEN and isinstance(value, Function | Class):
             code = self._code(value, None, value.frame)
-        found = _argument(name, data, code, name, "", span)
+        bound = self._bound(around) if around is not None else {}
+        parameter = next((word for word, part in bound.items() if part is value), "")
+        found = _argument(name, data, code, name, parameter, span)
         return found if found.is_known else replace(found, source=(span, name), word=name)
 
     def _items(self, made: Instance, around: Instance | None, span: Span) -> Argument:
@@ -452,9 +478,9 @@ class _Reader:
         if isinstance(value, Function | Method):
             value = self.evaluator.tried(value, Arguments()) or Unknown()
         items = sequence(value)
-        if items is not None:
+        if items is not None and not (isinstance(value, ListValue) and value.kind == "list"):
             value = ListValue({"items": items})
-        return self._without_code("it", value, span)
+        return self._without_code("it", value, span, around)
 
     def _callbacks(self, node: Concurrence, made: Instance) -> Callbacks:
         lost: list[tuple[str, Span]] = []

@@ -189,6 +189,9 @@ class _Writer:
         self.made.modules |= machine.constructions.modules
         for name, span in machine.constructions.registered:
             self.lose(span, f"the function of `{name}`", "call it in a state")
+        for first, second, span in machine.constructions.shared:
+            text = f"`{second[-1]}` and `{first[-1]}` are one object, and two in a program"
+            self.lose(span, text, "keep what they share in userdata")
         root = machine.root
         names = (root.name,)
         construction = machine.constructions.states.get(names)
