@@ -1,4 +1,4 @@
-"""What the targets scxml and yasmin accept: the examples, the cases of the tests, random machines.
+"""What the targets scxml, yasmin and flexbe accept: examples, cases of the tests, random machines.
 
     python bench/frameworks.py [COUNT]    # 500 random machines
 
@@ -16,8 +16,9 @@ from hypothesis import HealthCheck, given, seed, settings
 from smachac.diagnostics.diagnostic import Report
 from smachac.driver import analyse_script
 from smachac.ir.nodes import Machine
+from smachac.targets.flexbe import names as flexbe
 from smachac.targets.scxml import document
-from smachac.targets.yasmin.structure import refused
+from smachac.targets.yasmin import structure as yasmin
 from tests.strategies.full_machines import busy_machines
 from tests.support.typed_machines import with_state_types
 
@@ -31,10 +32,14 @@ def refused_by_scxml(machine: Machine) -> list[str]:
 
 
 def refused_by_yasmin(machine: Machine) -> list[str]:
-    return [finding.message for finding in refused(machine)]
+    return [finding.message for finding in yasmin.refused(machine)]
 
 
-TARGETS = {"scxml": refused_by_scxml, "yasmin": refused_by_yasmin}
+def refused_by_flexbe(machine: Machine) -> list[str]:
+    return [finding.message for finding in flexbe.refused(machine)]
+
+
+TARGETS = {"scxml": refused_by_scxml, "yasmin": refused_by_yasmin, "flexbe": refused_by_flexbe}
 
 
 def scripts(target: str, pattern: str) -> None:

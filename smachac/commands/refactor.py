@@ -11,7 +11,7 @@ import sys
 from argparse import Namespace
 
 from smachac.commands.arguments import SCRIPT, as_path, colour, dry_run, quiet, search_folders
-from smachac.commands.output import FINDINGS, print_report, usage
+from smachac.commands.output import FINDINGS, print_report, shown, usage
 from smachac.commands.swapped import swapped_arguments
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
@@ -164,6 +164,11 @@ def perform(arguments: Namespace, change: Callable[[EditedScript], object]) -> i
 
     with deep_recursion():
         script = EditedScript(arguments.script, arguments.scripts, arguments.templates)
+        caller = script.caller()
+        if caller is not None:
+            if not arguments.quiet:
+                print(f"{shown(arguments.script)} is a part of {shown(caller)}")
+            script = EditedScript(caller, arguments.scripts, arguments.templates)
         try:
             change(script)
         except HasErrorsError:

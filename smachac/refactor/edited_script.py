@@ -16,7 +16,7 @@ from smachac.driver import CODES, Analysis, analyse
 from smachac.frontend.discovery import scripts_of
 from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.loader import Library
-from smachac.frontend.text.yaml_tree import Map
+from smachac.frontend.text.yaml_tree import Map, Seq
 from smachac.ir.nodes import Machine
 from smachac.refactor.cst import UnsupportedYamlError
 from smachac.refactor.editor import RefusedError, ScriptEditor
@@ -48,6 +48,7 @@ class EditedScript:
         self.analysis = self.read(self.disk)
         self.editors: dict[str, ScriptEditor] = {}
         self.made: dict[str, str] = {}
+        self.companions: dict[Path, tuple[Source, str]] = {}
 
     def read(self, disk: Disk, path: Path | None = None) -> Analysis:
         """The analysis of the script, or of another one, read from a disk."""
@@ -98,6 +99,13 @@ class EditedScript:
         }
         return {**changed, **self.made}
 
+    def caller(self) -> Path | None:
+        """For a sub-script, the first script in its folder that uses it and has no errors."""
+        source = self.disk.read(self.path, [])
+        if source is None or not isinstance(self.disk.parse(source, []), Seq):
+            return None
+        return next((path for path, _ in self.others([os.path.realpath(self.path)])), None)
+
     def others(self, changed: Container[str]) -> Iterator[tuple[Path, Machine]]:
         """The machines of the other scripts in the same folder that use one of these files and have
         no errors."""
@@ -129,11 +137,21 @@ class EditedScript:
             raise RefusedError(span, message, help)
         if not same(self.machine, after.checked):
             raise RefusedError(span, "the machine would behave differently")
+        self._follow(self.machine, after.checked)
         for path, machine in self.others(texts.keys() - {os.path.realpath(self.path)}):
             other = self.read(disk, path).checked
             if other is None or not same(machine, other):
                 raise RefusedError(span, f"the machine of {path} would behave differently")
+            self._follow(machine, other)
         return after
+
+    def _follow(self, before: Machine, after: Machine) -> None:
+        """Change the scenarios and faults in the folder of the script that name states of a
+        machine."""
+        from smachac.refactor.companions import changed_companions
+
+        found = changed_companions(self.path.parent, self.disk, before, after)
+        self.companions = {**found, **self.companions}
 
     def changed(self, span: Span, wanted: Callable[[Machine], bool]) -> Analysis:
         """The script after a change of its behaviour; it may have errors. Raises RefusedError
@@ -146,6 +164,8 @@ class EditedScript:
         if not wanted(after.machine):
             help = "write its fields out, or format the script: `smachac fmt`"
             raise RefusedError(span, "the text would become another machine than wanted", help)
+        if self.analysis.machine is not None:
+            self._follow(self.analysis.machine, after.machine)
         return after
 
     def results(self) -> dict[str, tuple[Source, str]]:
@@ -164,4 +184,8 @@ class EditedScript:
             before = disk.read(Path(shown), [])
             assert before is not None
             found[name] = before, with_line_ends(text, before.text)
+        for path, (_, text) in self.companions.items():
+            before = disk.read(path, [])
+            assert before is not None
+            found[os.path.realpath(path)] = before, with_line_ends(text, before.text)
         return found

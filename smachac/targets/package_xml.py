@@ -6,21 +6,24 @@ from smachac.ir.nodes import Machine
 from smachac.targets import made_by
 
 
-def package_xml(machine: Machine, name: str, depends: str, build_type: str) -> str:
-    """The text of package.xml. `depends` are its lines of dependencies, each with a line break."""
+def package_xml(
+    machine: Machine, name: str, depends: str, build_type: str, exports: str = ""
+) -> str:
+    """The text of package.xml. `depends` are its lines of dependencies, `exports` further lines of
+    its exports, each with a line break."""
     return f"""\
 <?xml version="1.0"?>
 <!-- {made_by(machine)} -->
 <package format="3">
   <name>{name}</name>
   <version>0.0.0</version>
-  <description>{_escaped(summary(machine))}</description>
+  <description>{escaped(summary(machine))}</description>
   <maintainer email="todo@example.com">TODO: who keeps it</maintainer>
   <license>TODO: its license</license>
 {depends}\
   <export>
     <build_type>{build_type}</build_type>
-  </export>
+{exports}  </export>
 </package>
 """
 
@@ -31,5 +34,9 @@ def summary(machine: Machine) -> str:
     return lines[0] or f"The state machine {machine.root.name}."
 
 
-def _escaped(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+_ENTITIES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"})
+
+
+def escaped(text: str) -> str:
+    """A text in XML, also in an attribute."""
+    return text.translate(_ENTITIES)

@@ -53,7 +53,7 @@ ELSEWHERE = {
     "cpp_step": "tests/cpp/test_step_example.py",
     "editors": "settings of editors",
     "existing": "tests/docs/test_existing.py",
-    "frameworks": "tests/scxml/test_host.py, tests/yasmin/test_programs.py",
+    "frameworks": "tests/scxml/test_host.py, tests/yasmin, tests/flexbe/test_page.py",
     "properties": "tests/docs/test_properties.py",
     "robots": "tests/docs/test_tutorial.py",
     "ros": "tests/ros, tests/targets/test_ros_2.py",

@@ -21,9 +21,10 @@ def expected_folder(case: Path) -> Path:
     return case / "expected"
 
 
-TARGETS = [name for name in target_names() if name not in ("html", "yasmin")]
+TARGETS = [name for name in target_names() if name not in ("flexbe", "html", "yasmin")]
 """Those with expected files. A page of `html` has 1.7 MB; tests/targets/test_html.py compares its
-data with the machine. The files of `yasmin` contain those of `python`; tests/yasmin runs them."""
+data with the machine. The files of `flexbe` and `yasmin` contain those of
+`python`; tests/flexbe and tests/yasmin run them."""
 
 
 @pytest.mark.parametrize("case", [*CASES, *EXAMPLES], ids=lambda case: case.name)

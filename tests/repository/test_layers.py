@@ -40,6 +40,7 @@ PACKAGES: Mapping[str, frozenset[str]] = {
             "genpy",
             "smach_msgs",
             "yaml",
+            "flexbe_core",
             "yasmin",
         }
     ),

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import io
+import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -19,6 +21,9 @@ from smachac.targets.yasmin import TARGET
 from tests.support.typed_machines import with_state_types
 from tests.yasmin import stand_in
 
+ENGINE: Any = importlib.import_module("yasmin") if os.environ.get("SMACHAC_YASMIN") else stand_in
+"""The stand-in, or with SMACHAC_YASMIN=1 the YASMIN that is installed."""
+
 RUNTIME = Path(__file__).parents[2] / "smachac" / "runtime" / "yasmin" / "smachac_yasmin.py"
 
 
@@ -31,13 +36,13 @@ def files_of(machine: Machine, library: Library) -> dict[str, str] | None:
 
 
 @contextmanager
-def loaded(files: dict[str, str]) -> Iterator[Any]:
+def loaded(files: dict[str, str], yasmin: Any = ENGINE) -> Iterator[Any]:
     """The module for YASMIN, with those that it imports."""
     names = [*files]
     texts = {name.removesuffix(".py"): files[name] for name in reversed(names)}
     texts = {"smachac_yasmin": RUNTIME.read_text("utf-8"), **texts}
     before = {name: sys.modules.get(name) for name in ("yasmin", *texts)}
-    sys.modules["yasmin"] = stand_in
+    sys.modules["yasmin"] = yasmin
     try:
         for name, text in texts.items():
             module = sys.modules[name] = ModuleType(name)

@@ -163,6 +163,9 @@ class StateMachine(State):
             if name not in reached:
                 raise RuntimeError(f"State '{name}' is unreachable")
 
+    def get_current_state(self) -> str:
+        return self._current
+
     def cancel_state(self) -> None:
         if self.is_running() and self._current:
             self._states[self._current].cancel_state()

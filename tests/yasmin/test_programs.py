@@ -9,6 +9,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -111,6 +112,56 @@ def test_a_cancelled_machine_ends_as_preempted() -> None:
 
         run.observe(observe)
         assert run.execute() == "preempted"
+
+
+def test_the_handler_of_stop_signals_of_a_node_finds_the_machine_running() -> None:
+    """Its loop waits until the machine has ended."""
+    files, _ = files_of(WAITING)
+    with loaded(files) as module:
+        run = module.run()
+        running = [run.is_running()]
+
+        def observe(event: dict[str, str]) -> None:
+            running.append(run.is_running())
+            if event["event"] == "enter" and event["path"].endswith("OTHER"):
+                run.request_preempt()
+
+        run.observe(observe)
+        assert run.execute() == "preempted"
+        assert running[0] is False
+        assert all(running[1:])
+        assert run.is_running() is False
+
+
+def test_a_request_between_the_last_state_and_the_end_is_not_lost() -> None:
+    """YASMIN has no current state then: the machine around gets the request."""
+    files, _ = files_of(AROUND)
+    with loaded(files) as module:
+        runs: list[Any] = []
+        machine = sys.modules["smachac_yasmin"].Machine
+        end = machine._end
+
+        def asking(self: Any, blackboard: object, outcome: str) -> None:
+            if self.path == "sm/IN":
+                runs[0].request_preempt()
+            end(self, blackboard, outcome)
+
+        machine._end = asking
+        runs.append(module.run())
+        assert runs[0].execute() == "preempted"
+
+
+AROUND = """\
+name: sm
+outcomes: [done, preempted]
+states:
+  - IN:
+      template: StateMachine
+      outcomes: [succeeded]
+      states: [{A: {template: CallbacksState, callbacks: {}, transitions: {succeeded: succeeded}}}]
+      transitions: {succeeded: WAIT}
+  - WAIT: {template: SleepState, time: 60.0, transitions: {succeeded: done, preempted: preempted}}
+"""
 
 
 def test_an_exception_is_no_cancel() -> None:

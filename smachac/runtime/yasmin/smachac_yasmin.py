@@ -15,6 +15,7 @@ import inspect
 import logging
 import threading
 import traceback
+from functools import partial
 from types import MappingProxyType
 
 from yasmin import Blackboard, State, StateMachine
@@ -25,60 +26,87 @@ _LOG = logging.getLogger("yasmin")
 
 
 class Keys:
-    """The userdata of a `Skill`, as SMACH has it: its declared keys on the blackboard. `prefix` is
-    that of its container where it may use every key there."""
+    """The userdata of a `Skill`, as SMACH has it: its declared keys, by their names on the
+    blackboard."""
 
-    def __init__(self, blackboard, skill, prefix=None):
+    def __init__(self, skill, blackboard, inputs, outputs):
         self.__dict__.update(
-            _blackboard=blackboard, _skill=skill, _state=skill.state, _prefix=prefix
+            _skill=skill, _blackboard=blackboard, _inputs=inputs, _outputs=outputs, _path=skill.path
         )
 
-    def _name(self, key):
-        return key if self._prefix is None else self._prefix + key
-
     def __getitem__(self, key):
-        if self._prefix is None and key not in self._state.get_registered_input_keys():
-            raise KeyError(f"{key!r} is not one of the input keys")
-        if self._name(key) not in self._blackboard:
-            raise KeyError(f"{key!r} holds nothing")
-        return self._blackboard[self._name(key)]
+        try:
+            return self._blackboard[self._inputs[key]]
+        except (KeyError, RuntimeError):
+            known = key in self._inputs
+            fault = "holds nothing" if known else "is not one of the input keys"
+            raise KeyError(f"{key!r} {fault}") from None
 
     def __setitem__(self, key, value):
-        if self._prefix is None and key not in self._state.get_registered_output_keys():
+        if key not in self._outputs:
             _LOG.error("%r is not one of the output keys: the value is dropped", key)
             return
-        self._blackboard[self._name(key)] = value
-        self._skill.tell("write", key=key, value=value)
+        self._blackboard[self._outputs[key]] = value
+        if self._skill.observer is not None:
+            self._skill.tell("write", key=key, value=value)
 
     def __contains__(self, key):
-        inputs = self._state.get_registered_input_keys()
-        known = self._prefix is not None or key in inputs
-        return known and self._name(key) in self._blackboard
+        return key in self._inputs and self._inputs[key] in self._blackboard
 
-    def __getattr__(self, key):
-        return self[key]
-
-    def __setattr__(self, key, value):
-        self[key] = value
+    __getattr__ = __getitem__
+    __setattr__ = __setitem__
 
     def keys(self):
         """The keys that can be read."""
-        if self._prefix is None:
-            return [key for key in self._state.get_registered_input_keys() if key in self]
-        names = self._blackboard.keys()
-        return [name[len(self._prefix) :] for name in names if name.startswith(self._prefix)]
+        return [key for key in self._inputs if key in self]
+
+
+class AllKeys(Keys):
+    """The userdata of the state in a `Repeat`, which may use every key there."""
+
+    def keys(self):
+        names, prefix = self._blackboard.keys(), self._inputs.prefix
+        return [name[len(prefix) :] for name in names if name.startswith(prefix)]
+
+
+class _AllNames:
+    """The names on the blackboard of all keys of a container."""
+
+    def __init__(self, prefix):
+        self.prefix = prefix
+
+    def __getitem__(self, key):
+        return self.prefix + key
+
+    def __contains__(self, key):
+        return True
+
+
+def _keys_of(inputs):
+    """A class of `Keys` with a property for each input: several times as fast as `__getattr__`."""
+
+    def reader(key, name):
+        def read(self):
+            try:
+                return self._blackboard[name]
+            except RuntimeError:
+                raise KeyError(f"{key!r} holds nothing") from None
+
+        return property(read)
+
+    readers = {key: reader(key, name) for key, name in inputs.items() if not hasattr(Keys, key)}
+    return type("Keys", (Keys,), readers)
 
 
 class _Node:
     """A state or container: its path, the container around it, its requests to stop.
 
-    `catches` is the outcome that an exception in it becomes, `last` the outcome of its last visit.
+    `catches` is the outcome that an exception in it becomes.
     """
 
     path = ""
     parent = None
     catches = ""
-    last = ""
     requested = False
     remapping = MappingProxyType({})
     running = ()
@@ -109,8 +137,12 @@ class _Node:
             self.observer({"event": event, "path": self.path, **fields})
 
     def ended(self, outcome):
-        """Note the outcome of this visit. YASMIN raises an error for one that is not declared."""
+        """Pass the end of this visit to the observer. YASMIN raises an error for an outcome that is
+        not declared."""
         self.last = outcome
+        if self.observer is None:
+            return outcome
+        self.parent.latest = self
         self.tell("exit", outcome=outcome)
         declared = {*self.get_outcomes(), self.catches}
         if isinstance(self.parent, Machine) and outcome not in declared:
@@ -125,6 +157,10 @@ class Skill(_Node, State):
         State.__init__(self, list(state.get_registered_outcomes()))
         self.state = state
         self.catches = catches
+        self.keys = None
+        self.work = getattr(state, "attempted", state.execute)
+        if catches:
+            self.work = self._caught
 
     @property
     def requested(self):
@@ -141,20 +177,38 @@ class Skill(_Node, State):
         self.request()
         State.cancel_state(self)
 
-    def execute(self, blackboard):
-        self.parent.starts(self)
+    def bind(self, blackboard):
+        """Take the blackboard of a run: `execute` is a function without further look-ups."""
+        parent, work = self.parent, self.work
+        if self.keys is None:
+            self.keys = parent.keys(self)
+        keys = self.keys(self, blackboard)
+
+        def execute(_blackboard):
+            if parent.requested:
+                parent.pass_on(self)
+            return work(keys)
+
+        self.execute = execute
+
+    def observed(self, keys, work):
+        """Run the work of the state, with the events of the trace."""
         self.tell("enter")
-        prefix = self.parent.prefix if isinstance(self.parent, Repeat) else None
         try:
-            execute = getattr(self.state, "attempted", self.state.execute)
-            outcome = execute(Keys(blackboard, self, prefix))
+            outcome = work(keys)
         except Exception as error:
             self.tell("error", message=f"{type(error).__name__}: {error}")
-            if not self.catches:
-                raise
-            _LOG.error(traceback.format_exc())
-            outcome = self.catches
+            raise
         return self.ended(outcome)
+
+    def _caught(self, keys):
+        """Run the state; an exception becomes an outcome."""
+        try:
+            return getattr(self.state, "attempted", self.state.execute)(keys)
+        except Exception as error:
+            self.tell("error", message=f"{type(error).__name__}: {error}")
+            _LOG.error(traceback.format_exc())
+            return self.catches
 
 
 class _Container(_Node):
@@ -171,6 +225,7 @@ class _Container(_Node):
         self.userdata = dict(userdata)
         self.catches = catches
         self.children = {}
+        self.requested = False
 
     def take(self, name, state, remapping):
         """Take a state into the container."""
@@ -178,29 +233,35 @@ class _Container(_Node):
         state.remapping = dict(remapping)
         self.children[name] = state
 
-    def names(self, state):
-        """The names of a state's keys on the blackboard; a container copies its own keys."""
-        if not isinstance(state, Skill) or isinstance(self, Repeat):
-            return {}
-        own = state.state
-        keys = [*own.get_registered_input_keys(), *own.get_registered_output_keys()]
-        outer = {key: self.prefix + state.remapping.get(key, key) for key in keys}
-        return {key: name for key, name in outer.items() if key != name}
+    def keys(self, state):
+        """A function that makes the userdata of a state."""
+        own, remapping = state.state, state.remapping
+        inputs, outputs = (
+            {key: self.prefix + remapping.get(key, key) for key in keys}
+            for keys in (own.get_registered_input_keys(), own.get_registered_output_keys())
+        )
+        return partial(_keys_of(inputs), inputs=inputs, outputs=outputs)
 
-    def starts(self, state):
+    def bind(self, blackboard):
+        """Take the blackboard of a run."""
+        for state in self.children.values():
+            state.bind(blackboard)
+
+    def pass_on(self, state):
         """A branch or item starts: `execute` has passed requests on before."""
 
     def enter(self, blackboard):
         if self.parent is None:
+            self.bind(blackboard)
             self.tell("start")
             return
-        self.parent.starts(self)
+        if self.parent.requested:
+            self.parent.pass_on(self)
         self.tell("enter")
         self._copy(blackboard, self.inputs, into=True)
 
     def leave(self, blackboard, outcome):
         if self.parent is None:
-            self.last = outcome
             self.tell("finish", outcome=outcome)
             return outcome
         self.ended(outcome)
@@ -232,10 +293,9 @@ class Machine(_Container, StateMachine):
     def __init__(self, path, outcomes, inputs=(), outputs=(), userdata=(), catches=""):
         StateMachine.__init__(self, list(outcomes))
         self.set_up(path, inputs, outputs, userdata, catches)
-        self.previous = None
+        self.receiver = None
         self.by_name = {}
         self.add_start_cb(self._start)
-        self.add_transition_cb(self._move)
         self.add_end_cb(self._end)
 
     def add(self, name, state, transitions, remapping=()):
@@ -245,23 +305,35 @@ class Machine(_Container, StateMachine):
         name = f"{name} (state)" if name in self.get_outcomes() else name
         self.by_name[name] = state
         made = Caught(state) if isinstance(state, Machine) and state.catches else state
-        self.add_state(name, made, transitions=transitions, remappings=self.names(state))
+        self.add_state(name, made, transitions=transitions)
 
-    def starts(self, state):
+    def request(self):
+        """Send a request to stop to this machine and to its state. `receiver` is the state that has
+        it; None if the machine has no state yet, or no more."""
+        with _LOCK:
+            self.requested = True
+            self.tell("preempt")
+            self.receiver = self.by_name.get(self.get_current_state())
+            if self.receiver is not None:
+                self.receiver.request()
+
+    def pass_on(self, state):
         """A state starts: it gets the request of the machine, unless the state before it has
         answered that."""
         with _LOCK:
-            before = self.previous
-            if self.requested and before is not None and not before.requested:
+            before = self.receiver
+            if before is state and state.requested:
+                return
+            if before is not None and not before.requested:
                 self.requested = False
-            elif self.requested:
-                if before is not None:
-                    before.serve()
-                state.request()
-            self.running, self.previous = [state], state
+                return
+            if before is not None:
+                before.serve()
+            self.receiver = state
+            state.request()
 
     def _start(self, blackboard, initial):
-        self.previous = None
+        self.receiver = None
         self.enter(blackboard)
 
     def _move(self, blackboard, state, target, outcome):
@@ -272,11 +344,11 @@ class Machine(_Container, StateMachine):
         if not outcome:
             return
         with _LOCK:
-            self.running = ()
-            if not self.previous.requested:
+            if self.receiver is not None and not self.receiver.requested:
                 self.requested = False
-        last = self.previous.last
-        self.previous.tell("transition", outcome=last, to=f"{self.path}:{outcome}")
+        if self.observer is not None:
+            last = self.latest
+            last.tell("transition", outcome=last.last, to=f"{self.path}:{outcome}")
         self.leave(blackboard, outcome)
 
 
@@ -338,10 +410,8 @@ class Concurrence(_Container, State):
             nonlocal stopping
             error = None
             try:
-                board = blackboard.copy()
-                board.set_remappings({**board.get_remappings(), **self.names(state)})
                 made = Caught(state) if isinstance(state, Machine) and state.catches else state
-                outcome = made(board)
+                outcome = made(blackboard.copy())
             except Exception as raised:
                 error = raised
             with _LOCK:
@@ -404,6 +474,10 @@ class Repeat(_Container, State):
     def add(self, name, state):
         """Add the state that is repeated."""
         self.take(name, state, {})
+
+    def keys(self, state):
+        names = _AllNames(self.prefix)
+        return partial(AllKeys, inputs=names, outputs=names)
 
     def cancel_state(self):
         self.request()
@@ -489,6 +563,10 @@ class Run:
         todo = [self.machine]
         while todo:
             state = todo.pop()
+            if state.observer is None and isinstance(state, Skill):
+                state.work = partial(state.observed, work=state.work)
+            elif state.observer is None and isinstance(state, Machine):
+                state.add_transition_cb(state._move)
             state.observer = observer
             todo += getattr(state, "children", {}).values()
 
@@ -496,15 +574,23 @@ class Run:
         """Run the machine; its outcome. After `cancel_state_machine`, which YASMIN ends with an
         exception, it is `preempted` if the machine has that outcome."""
         try:
-            return self.machine(self.blackboard)
+            return self._executed()
         except RuntimeError:
             if self.machine.is_canceled() and PREEMPTED in self.machine.get_outcomes():
                 return PREEMPTED
             raise
 
+    def _executed(self):
+        # Not in `execute`: pybind11 compares a caller of that name with each state that runs.
+        return self.machine(self.blackboard)
+
     def request_preempt(self):
         """Request a stop of the machine."""
         self.machine.request()
+
+    def is_running(self):
+        """Whether the machine is being executed."""
+        return self.machine.is_running()
 
 
 class Program:

@@ -67,9 +67,11 @@ install_scripts=$base/lib/{name}
 """
 
 
-def setup_file(machine: Machine, name: str, start: str, more: str = "") -> str:
+def setup_file(machine: Machine, name: str, start: str = "", more: str = "") -> str:
     """The file setup.py of a package. `start` is the function that runs the program, as
-    `module:function`; `more` are further lines of `data_files`."""
+    `module:function`, if there is one; `more` are further lines of `data_files`."""
+    command = f'"console_scripts": ["{stem(machine)} = {name}.{start}"]'
+    entry_points = f"    entry_points={{{command}}},\n" if start else ""
     return f"""\
 # {made_by(machine)}
 from setuptools import setup
@@ -88,8 +90,7 @@ setup(
     maintainer_email="todo@example.com",
     description={string(summary(machine))},
     license="TODO: its license",
-    entry_points={{"console_scripts": ["{stem(machine)} = {name}.{start}"]}},
-)
+{entry_points})
 """
 
 

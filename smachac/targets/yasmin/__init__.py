@@ -99,7 +99,7 @@ TARGET = Target(
     runtime=_runtime,
     options={"package": "true, or NAME: a package for colcon (ament_python)"},
     lacks=(
-        "states and machines without outcomes",
+        "states and machines without outcomes, machines without states",
         "items of an Iterator whose code uses modules or names of the program",
         "templates that add code around the run of the program, as SMACHA's do",
     ),

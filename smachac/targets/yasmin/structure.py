@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ast
-import builtins
 from collections.abc import Callable, Iterator, Mapping
 
 from smachac.diagnostics.diagnostic import Diagnostic
@@ -13,14 +11,12 @@ from smachac.ir.concurrence_rules import by_priority
 from smachac.ir.nodes import (
     Concurrence,
     Container,
-    Expression,
     Leaf,
     Machine,
     Node,
     StateMachine,
     Transition,
 )
-from smachac.ir.python_code import parse_code
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import containers, leads_to_child, outcome_names, remapping, walk
 from smachac.targets.errors import unsupported_by_target
@@ -30,11 +26,11 @@ from smachac.targets.python.formatter import (
     Group,
     call,
     laid_out,
-    literal,
     mapping,
     names,
     string,
 )
+from smachac.targets.python.items import items, refused_items
 from smachac.targets.python.structure import notes, variable_names
 
 CLASSES = ("Concurrence", "Repeat")
@@ -53,12 +49,7 @@ def refused(machine: Machine) -> Iterator[Diagnostic]:
         if not isinstance(node, Leaf) and not node.children:
             message = f"`{node.name}` has no states"
             yield unsupported_by_target(node.span, "YASMIN", message, names=(path,))
-        if isinstance(node, nodes.Iterator) and node.items is not None:
-            data = node.items.data
-            if isinstance(data, Expression) and _function(data) is None:
-                message = f"the items `{data.text}` need names of the program"
-                help_ = "write the items in userdata, and their key as `it`"
-                yield unsupported_by_target(node.items.span, "YASMIN", message, help_, (path,))
+    yield from refused_items(machine, "YASMIN")
 
 
 def built(machine: Machine) -> list[str]:
@@ -170,7 +161,7 @@ def _rules(node: Concurrence) -> Iterator[tuple[str, Doc]]:
 
 
 def _repeat(node: nodes.Iterator) -> Iterator[tuple[str, Doc]]:
-    yield "items=", _items(node)
+    yield "items=", items(node)
     yield "item=", string(node.item_key)
     yield "again=", names(node.loop_outcomes)
     yield "exhausted=", string(node.exhausted_outcome)
@@ -178,35 +169,6 @@ def _repeat(node: nodes.Iterator) -> Iterator[tuple[str, Doc]]:
         yield "renamed=", mapping((key, string(to)) for key, to in node.final_map)
     if node.sugar:
         yield "is_loop=", "True"
-
-
-def _items(node: nodes.Iterator) -> Doc:
-    if node.items_key:
-        return f"lambda ud: ud[{string(node.items_key)}]"
-    if node.items is None:
-        return "()"
-    data = node.items.data
-    return _function(data) or "()" if isinstance(data, Expression) else literal(data)
-
-
-def _function(code: Expression) -> str | None:
-    """The code of items as a function of userdata; None if it needs other names."""
-    try:
-        tree = parse_code(code.text.strip())
-    except SyntaxError:
-        return None
-    parts = [*ast.walk(tree)]
-    used = [node for node in parts if isinstance(node, ast.Name)]
-    bound = {node.arg for node in parts if isinstance(node, ast.arg)}
-    bound |= {node.id for node in used if not isinstance(node.ctx, ast.Load)}
-    text = code.text.strip()
-    if not isinstance(tree, ast.Lambda):
-        parameter = "userdata" if any(name.id == "userdata" for name in used) else "ud"
-        bound.add(parameter)
-        text = f"lambda {parameter}: {text}"
-    elif not tree.args.args:
-        text = f"lambda ud: ({text})()"
-    return text if all(name.id in bound or hasattr(builtins, name.id) for name in used) else None
 
 
 def _target(node: Container, edge: Transition, states: frozenset[str]) -> str:

@@ -63,7 +63,7 @@ class Vector(smach.State):
         for key in [*node.get("in", []), *node.get("io", [])]:
             if key in found and found[key] is not None:
                 value = copy.deepcopy(found[key])
-                event = {"event": "read", "path": userdata._skill.path, "key": key, "value": value}
+                event = {"event": "read", "path": userdata._path, "key": key, "value": value}
                 PERFORMED["events"].append(event)
         step = node["steps"][min(self.visit, len(node["steps"])) - 1]
         return Steps()._perform(step, found)
