@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeAlias
 
 from smachac.checks import RULES, check_machine
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, grouped, in_order
@@ -24,6 +25,7 @@ from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import walk
 from smachac.pysource.coverage import Coverage, coverage_of, unknown_states
 from smachac.pysource.machines.class_facts import ClassReader
+from smachac.pysource.machines.constructions import Constructions, constructions
 from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import Evaluator
 from smachac.pysource.machines.graph import Graph, graphs
@@ -51,6 +53,9 @@ IN_ALL = frozenset({"SM201", "SM203"})
 """The codes of findings that count only if they are true of each instance of a container: another
 one can have other transitions."""
 
+Built: TypeAlias = tuple[Graph, Constructions]
+"""A machine with the constructions of its states."""
+
 MOST_FILES, MOST_ENTRIES = 20_000, 200_000
 """The most Python files, and files and folders, of a repository that are searched for modules."""
 
@@ -72,17 +77,22 @@ class PythonFile:
 class PythonProject:
     """Reads Python files of repositories; modules that several files import are read once.
     `cached`: what is known from the last run is used, without the graphs, and kept for the next
-    one by `keep`."""
+    one by `keep`. `assumed` are the values of conditions that are not known, by their code."""
 
-    def __init__(self, disk: Disk, *, cached: bool = False) -> None:
+    def __init__(
+        self, disk: Disk, *, cached: bool = False, assumed: Mapping[str, bool] | None = None
+    ) -> None:
         self.disk = disk
+        self.assumed = assumed
         self.cached = cached
         self.caches: dict[str, Cache] = {}
         self.repositories: dict[tuple[str, bool], tuple[Repository, Evaluator, ClassReader]] = {}
 
-    def read(self, path: Path, *, everything: bool = False) -> PythonFile:
+    def read(
+        self, path: Path, *, everything: bool = False, built: list[Built] | None = None
+    ) -> PythonFile:
         """The machines of a file with the findings about them; with `everything`, those of all
-        rules."""
+        rules. `built` gets each machine with the constructions of its states."""
         report: Report = []
         source = self.disk.read(path, report)
         library = disk_library(path, report, disk=self.disk, codes=CODES)
@@ -108,8 +118,15 @@ class PythonProject:
         def made(roots: Roots) -> list[Graph]:
             return [*graphs(roots, evaluator, reader)]
 
+        def made_first(roots: Roots) -> list[Graph]:
+            found = made(roots)
+            if built is not None:
+                built.extend((graph, constructions(graph, evaluator, repository))
+                             for graph in found)  # fmt: skip
+            return found
+
         with deep_recursion():
-            several = machines_of(repository, evaluator, str(path), made)
+            several = machines_of(repository, evaluator, str(path), made_first)
             whole = [graph for some in several for graph in some]
             findings = [item for graph in whole for item in check_machine(graph.machine, rules)]
             findings = _in_file(findings, str(path))
@@ -137,6 +154,11 @@ class PythonProject:
             path=path, source=source, graphs=tuple(whole), report=found, coverage=coverage
         )
 
+    def used_assumptions(self) -> frozenset[str]:
+        """The conditions that were not known and whose assumed values were needed."""
+        known = (evaluator.used for _, evaluator, _ in self.repositories.values())
+        return frozenset().union(*known)
+
     def keep(self) -> None:
         """Writes what is known for the next run."""
         for cache in self.caches.values():
@@ -158,7 +180,7 @@ class PythonProject:
         key = os.path.realpath(root), everything
         if key not in self.repositories:
             repository = Repository(map(str, python_files(root)), self._text)
-            evaluator = Evaluator(repository)
+            evaluator = Evaluator(repository, self.assumed)
             reader = ClassReader(repository, whole=everything)
             self.repositories[key] = repository, evaluator, reader
         return self.repositories[key]

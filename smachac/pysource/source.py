@@ -60,8 +60,9 @@ def is_readable(text: str) -> bool:
     return len(text) <= LONGEST and not _NOT_PORTABLE_LINES.search(text)
 
 
-def python_text(source: Source, *, template: bool) -> PythonText | None:
-    """A text of Python; None if it is not valid, or nested too deeply."""
+def python_text(source: Source, *, template: bool, compiled: bool = True) -> PythonText | None:
+    """A text of Python; None if it is not valid, or nested too deeply. `compiled`: nor if it has
+    `await` outside `async` or `return` outside a function."""
     text = source.text
     if not is_readable(text):
         return None
@@ -75,7 +76,7 @@ def python_text(source: Source, *, template: bool) -> PythonText | None:
         text = _with_statements(text, source.text, filled)
     try:
         tree = parse_module(text)
-        if not template:  # finds `await` outside `async`, and `return` outside a function
+        if compiled and not template:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", SyntaxWarning)
                 compile(tree, "", "exec", dont_inherit=True)

@@ -28,6 +28,19 @@ def test_the_example(
     assert Path("sm.html").is_file()
 
 
+def test_the_files_of_the_import(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = PAGE.read_text("utf-8")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / ".git").mkdir()
+    (code, *_) = re.findall(r"^```python\n# parcels\.py\n(.*?)^```", text, re.M | re.S)
+    Path("parcels.py").write_text(f"# parcels.py\n{code}")
+    main(["import", "parcels.py", "-o", "project"])
+    shown = re.findall(r"^```yaml\n# (\S+)\n(.*?)^```", text, re.M | re.S)
+    assert [name for name, _ in shown] == ["project/main.yml", "project/templates/Weigh.yml"]
+    for name, content in shown:
+        assert Path(name).read_text("utf-8").partition("\n")[2] == content
+
+
 def test_the_table_of_codes_is_complete() -> None:
     from smachac.python_machines import CANNOT_WORK
 

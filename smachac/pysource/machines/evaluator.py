@@ -32,6 +32,7 @@ from smachac.pysource.machines.values import (
     Arguments,
     Class,
     Const,
+    Creation,
     DictValue,
     Frame,
     Function,
@@ -99,11 +100,14 @@ class _Region:
 
 class Evaluator:
     """Evaluates modules, functions and classes; `made` are the objects of SMACH's classes in the
-    order in which they were made, `called` the functions that were called. `exhausted`: a part of
-    the file took too many steps."""
+    order in which they were made, `called` the functions that were called, `generators` whether one
+    of them is a generator. `exhausted`: a part of the file took too many steps. `assumed` are the
+    values of conditions that are not known, by their code, `used` those that were needed."""
 
-    def __init__(self, project: Project) -> None:
+    def __init__(self, project: Project, assumed: Mapping[str, bool] | None = None) -> None:
         self.project = project
+        self.assumed = assumed or {}
+        self.used: set[str] = set()
         self.heap = Heap()
         self.steps = 0
         self.limit = MOST_STEPS
@@ -112,6 +116,7 @@ class Evaluator:
         self.regions: list[_Region] = []
         self.made: list[Instance] = []
         self.called: set[ast.AST] = set()
+        self.generators: dict[ast.AST, bool] = {}
         self.opened: list[Value] = []
         self.unsure = 0
         self.orphans = 0
@@ -215,6 +220,26 @@ class Evaluator:
             frame.module.faults = self.faults
             self.opened, self.regions, self.unsure, self.faults = around
 
+    def tried(self, function: Value, arguments: Arguments) -> Value | None:
+        """The result of a call, all changes of which are undone; None if it takes too long."""
+        around = self.opened, self.regions, self.calls, self.unsure, self.tries
+        others = [*self.heap.others]
+
+        def called() -> Value | None:
+            try:
+                return self.call(function, arguments, None, Frame({}, ModuleValue("", {})))
+            except (BudgetError, RecursionError):
+                return None
+            finally:
+                self.heap.undo(0)
+
+        self.opened, self.regions, self.calls, self.unsure, self.tries = [], [], [], 0, 0
+        try:
+            return self.heap.apart(called)
+        finally:
+            self.opened, self.regions, self.calls, self.unsure, self.tries = around
+            self.heap.others[:] = others
+
     def begin(self) -> None:
         """Begins the evaluation of a file, with all steps left. What the code of the one before
         has changed in modules that both import is undone."""
@@ -229,10 +254,20 @@ class Evaluator:
     def _branch(
         self, test: ast.expr, body: Sequence[ast.stmt], orelse: Sequence[ast.stmt], frame: Frame
     ) -> Completion | None:
-        known = truth(self.value(test, frame))
+        known = self._truth(test, frame)
         if known is not None:
             return self.block(body if known else orelse, frame)
         return self.choice([lambda: self.block(body, frame), lambda: self.block(orelse, frame)])
+
+    def _truth(self, test: ast.expr, frame: Frame) -> bool | None:
+        """The truth value of a condition, or that which is assumed; None: not known."""
+        known = truth(self.value(test, frame))
+        if known is not None or not self.assumed:
+            return known
+        code = ast.unparse(test)
+        if code in self.assumed:
+            self.used.add(code)
+        return self.assumed.get(code)
 
     def choice(self, branches: Sequence[Callable[[], Completion | None]]) -> Completion | None:
         """Evaluates branches of which one is taken, and joins the states after them."""
@@ -890,7 +925,7 @@ class Evaluator:
             case ast.Compare():
                 return self._comparison(node, frame)
             case ast.IfExp(test=test, body=body, orelse=orelse):
-                known = truth(self.value(test, frame))
+                known = self._truth(test, frame)
                 if known is not None:
                     return self.value(body if known else orelse, frame)
                 return self._either([body, orelse], frame)
@@ -1359,9 +1394,9 @@ class Evaluator:
             case Partial(function=inner, arguments=before):
                 return self.call(inner, before.followed_by(arguments), node, frame)
             case Function():
-                return self.run(function, arguments)
+                return self.run(function, arguments, Creation(node, frame, arguments))
             case Class() | LibraryClass():
-                return self.make(function, arguments, span, frame)
+                return self.make(function, arguments, span, frame, node)
             case Instance():
                 inner = self.of_class(function.cls, "__call__", function)
                 if isinstance(inner, Method):
@@ -1413,7 +1448,9 @@ class Evaluator:
                 self.steps += len(contents) // 4 if isinstance(contents, tuple | Mapping) else 0
         return value
 
-    def run(self, function: Function, arguments: Arguments) -> Value:
+    def run(
+        self, function: Function, arguments: Arguments, made_by: Creation | None = None
+    ) -> Value:
         """The result of a call of a function of the project."""
         node = function.node
         self.called.add(node)
@@ -1421,11 +1458,13 @@ class Evaluator:
         if len(self.calls) >= DEEPEST_CALL or (self.unsure and len(before) >= MOST_RECURSIVE):
             self._lose_in(arguments, adds=len(before) < 2 or self.adds > before[0])
             return UNKNOWN
-        if isinstance(node, ast.AsyncFunctionDef) or _yields(node):
+        if node not in self.generators:
+            self.generators[node] = isinstance(node, ast.AsyncFunctionDef) or _yields(node)
+        if self.generators[node]:
             return UNKNOWN
         slots = self._parameters(function, arguments)
         me = arguments.positional[0] if arguments.positional else None
-        frame = Frame(slots, function.frame.module, function.frame, function, me)
+        frame = Frame(slots, function.frame.module, function.frame, function, me, made_by=made_by)
         self.calls.append((function, self.adds))
         try:
             if isinstance(node, ast.Lambda):
@@ -1470,8 +1509,9 @@ class Evaluator:
         return slots
 
     def make(
-        self, cls: Class | LibraryClass, arguments: Arguments, span: Span | None, frame: Frame
-    ) -> Value:
+        self, cls: Class | LibraryClass, arguments: Arguments, span: Span | None, frame: Frame,
+        node: ast.expr | None = None,
+    ) -> Value:  # fmt: skip
         """A new object of a class."""
         if isinstance(cls, LibraryClass) and not cls.name.startswith("smach"):
             return self.project.new_object(self, cls, arguments)
@@ -1479,7 +1519,7 @@ class Evaluator:
             return self._member(cls, arguments)
         order = self.classes(cls)
         opaque = any(isinstance(base, Unknown | OneOf) for base in order)
-        made = Instance(cls, {}, span, opaque)
+        made = Instance(cls, {}, span, opaque, Creation(node, frame, arguments))
         if any(isinstance(base, LibraryClass) and base.name.startswith("smach") for base in order):
             self.made.append(made)
         if isinstance(cls, Class) and cls.is_dataclass and "__init__" not in cls.slots:
@@ -1489,7 +1529,7 @@ class Evaluator:
             return UNKNOWN
         maker = self._search(order, "__init__", made)
         if isinstance(maker, Method):
-            self.call(maker, arguments, None, frame)
+            self.call(maker, arguments, node, frame)
         return made
 
     def _member(self, cls: Class, arguments: Arguments) -> Value:

@@ -43,6 +43,7 @@ from smachac.pysource.machines.roots import Roots
 from smachac.pysource.machines.state_comments import StateComments
 from smachac.pysource.machines.values import (
     UNKNOWN,
+    Arguments,
     Class,
     Const,
     DictValue,
@@ -94,10 +95,11 @@ class Coverage(NamedTuple):
 
 
 class Graph(NamedTuple):
-    """A machine read from Python."""
+    """A machine read from Python. `objects` are those that are its states, by the path of names."""
 
     machine: Machine
     coverage: Coverage
+    objects: Mapping[tuple[str, ...], Instance] = {}
 
 
 def graphs(roots: Roots, evaluator: Evaluator, reader: FactReader) -> Iterator[Graph]:
@@ -125,13 +127,17 @@ class _Builder:
         self.states = 0
         self.nodes = 0
         self.path: list[Instance] = []
+        self.names_above: list[str] = []
+        self.objects: dict[tuple[str, ...], Instance] = {}
 
     def graph(self, container: Instance) -> Graph:
         span = container.span or NOWHERE
         name = self._name(container)
         node = self.container(container, name, span, 0)
+        objects = self.objects
         if not isinstance(node, StateMachine):
             node = _wrapped(node, span)
+            objects = {(node.name, *path): made for path, made in objects.items()}
         closed = self.roots.closed or "$executed" in container.slots
         exposed = "$exposed" in container.slots or not closed
         if exposed:
@@ -142,7 +148,7 @@ class _Builder:
             digest="",
             state_types=self.types,
         )
-        return Graph(machine, Coverage(self.states, tuple(self.unknown)))
+        return Graph(machine, Coverage(self.states, tuple(self.unknown)), objects)
 
     def _name(self, container: Instance) -> str:
         if isinstance(container.cls, Class):
@@ -168,7 +174,10 @@ class _Builder:
         if inside:
             added = ()
         self.path.append(made)
+        self.names_above.append(name)
+        self.objects[tuple(self.names_above)] = made
         node = self._built(made, name, span, depth, added, assumed, complete=complete)
+        self.names_above.pop()
         self.path.pop()
         return node
 
@@ -283,10 +292,11 @@ class _Builder:
         function = callback.function if isinstance(callback, Method) else callback
         if callback is None or _is_none(callback):
             return "all"
-        if isinstance(function, Function) and not isinstance(function.node, _DEFINITIONS):
-            found = self.evaluator.value(function.node.body, function.frame)
+        found = self.evaluator.tried(callback, Arguments((UNKNOWN,))) or UNKNOWN
+        if truth(found) is not None:
             return "any" if truth(found) else "all"
-        return "any"
+        is_short = isinstance(function, Function) and not isinstance(function.node, _DEFINITIONS)
+        return "all" if is_short else "any"
 
     def _iterator(
         self, made: Instance, common: dict[str, Any], built: tuple[Node, ...],
@@ -297,7 +307,7 @@ class _Builder:
         data: Data = Expression(text=_place(items, span).text, span=_place(items, span))
         if known is not None and all(isinstance(item, Const) for item in known):
             data = tuple(_data(item, span) for item in known)
-        loop = self.names(added[0].loop, span) if added else ()
+        loop = self._loop_outcomes(added[0], built[0].outcomes) if added and built else ()
         final = added[0].final if added else None
         pairs = final.items if isinstance(final, DictValue) else {}
         exhausted = made.slots.get("$exhausted_outcome")
@@ -313,6 +323,17 @@ class _Builder:
             if isinstance(pairs, Mapping) else (),
         )  # fmt: skip
 
+    def _loop_outcomes(
+        self, added: Added, outcomes: Sequence[Outcome]
+    ) -> list[tuple[str, Span]] | None:
+        """The outcomes after which the next item follows. With `break_outcomes` these are all
+        others, whatever `loop_outcomes` are."""
+        breaks = self.names(added.breaks, added.span)
+        if not breaks:
+            return self.names(added.loop, added.span)
+        ends = {name for name, _ in breaks}
+        return [(item.name, added.span) for item in outcomes if item.name not in ends]
+
     # --- states
 
     def state(self, value: Value, added: Added, name: str, depth: int) -> Node:
@@ -321,6 +342,8 @@ class _Builder:
         if isinstance(value, Instance) and is_container and not self._runs_as_state(value):
             return self.container(value, name, span, depth + 1, _outcomes_of(added))
         self.states += 1
+        if isinstance(value, Instance):
+            self.objects[(*self.names_above, name)] = value
         if not isinstance(value, Instance) or "$outcomes" not in value.slots:
             reason = self._missing(value, added)
             return self.open_leaf(name, span, added, reason, self._faults(value))

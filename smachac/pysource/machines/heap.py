@@ -64,6 +64,7 @@ class Added:
     kind: str = "add"
     connector: Value | None = None
     loop: Value | None = None
+    breaks: Value | None = None
     final: Value | None = None
     possible: bool = False
 

@@ -51,6 +51,12 @@ class Repository:
     def new_object(self, evaluator: Evaluator, cls: LibraryClass, arguments: Arguments) -> Value:
         return new_object(evaluator, cls, arguments)
 
+    def has(self, file: str) -> bool:
+        """Whether a file is one of the repository."""
+        path = PurePath(file)
+        stem = path.parent.name if path.name == "__init__.py" else path.stem
+        return file in self.by_stem.get(stem, ())
+
     def load(self, evaluator: Evaluator, name: str, user: ModuleValue) -> Value:
         """A module by its dotted name; unknown, with its name, if the repository has none."""
         if not name:
@@ -102,7 +108,7 @@ class Repository:
         if key in self.loaded:
             return self.loaded[key]
         source = self.read(file)
-        text = module_text(source) if source is not None else None
+        text = module_text(source, compiled=main) if source is not None else None
         if text is None:
             found = Unknown(reason=file)
             self.loaded[key] = found
@@ -155,9 +161,10 @@ def _setting(name: str) -> re.Pattern[str]:
     return re.compile(rf"\.{word}\b\s*(?:=[^=]|:)|setattr\([^,]*,\s*[\"']{word}[\"']")
 
 
-def module_text(source: Source) -> PythonText | None:
-    """The text of a module for Python 3 or 2; None if it cannot be read."""
-    text = python_text(source, template=False)
+def module_text(source: Source, *, compiled: bool = True) -> PythonText | None:
+    """The text of a module for Python 3 or 2; None if it cannot be read. `compiled`: nor if the
+    compiler of Python refuses it, which takes as long as parsing it."""
+    text = python_text(source, template=False, compiled=compiled)
     if text is None:
         with contextlib.suppress(NotInstalledError):
             text = python2_text(source)

@@ -73,6 +73,15 @@ _PARAMETERS: Mapping[str, tuple[str, ...]] = {
 }  # fmt: skip
 """The parameters of the states that are ready to use, in their order."""
 
+_OTHER_PARAMETERS: Mapping[str, tuple[str, ...]] = {
+    "smach.State": ("outcomes", "input_keys", "output_keys", "io_keys"),
+    "smach.CBState": (
+        "cb", "cb_args", "cb_kwargs", "outcomes", "input_keys", "output_keys", "io_keys",
+    ),
+    "smach.StateMachine": ("outcomes", "input_keys", "output_keys"),
+}  # fmt: skip
+"""The parameters of other classes, in their order."""
+
 _READ = ("goal_key", "goal_slots", "request_key", "request_slots")
 _WRITTEN = ("result_key", "result_slots", "response_key", "response_slots")
 
@@ -202,6 +211,12 @@ def _ready(name: str) -> Run:
     return run
 
 
+def takes_node(cls: Value, given: Arguments) -> bool:
+    """Whether the first argument for a class of smach_ros is the node of ROS 2."""
+    name = cls.name if isinstance(cls, LibraryClass) else ""
+    return name in _PARAMETERS and _without_node(name, given) is not given
+
+
 def _without_node(name: str, given: Arguments) -> Arguments:
     """The arguments without the node, which smach_ros of ROS 2 takes first: an object before a
     name."""
@@ -221,7 +236,7 @@ def _one(value: Value) -> Value:
 def _add(kind: str) -> Run:
     def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
         label, state = arguments.get(0, "label", UNKNOWN), arguments.get(1, "state", UNKNOWN)
-        connector = loop = final = None
+        connector = loop = breaks = final = None
         if kind == "add_auto":
             connector = arguments.get(2, "connector_outcomes", UNKNOWN)
             transitions, remapping = arguments.get(3, "transitions"), arguments.get(4, "remapping")
@@ -230,6 +245,7 @@ def _add(kind: str) -> Run:
         elif kind == "iterator":
             transitions, remapping = None, None
             loop = arguments.get(2, "loop_outcomes")
+            breaks = arguments.get(3, "break_outcomes")
             final = arguments.get(4, "final_outcome_map")
         else:
             transitions, remapping = arguments.get(2, "transitions"), arguments.get(3, "remapping")
@@ -246,7 +262,7 @@ def _add(kind: str) -> Run:
         added = Added(
             label=label or UNKNOWN, state=state or UNKNOWN, transitions=_copied(transitions),
             remapping=_copied(remapping), span=span, kind=kind, connector=connector, loop=loop,
-            final=_copied(final), possible=False,
+            breaks=breaks, final=_copied(final), possible=False,
         )  # fmt: skip
         whole = (*children.added, added)
         if len(whole) > 5_000:
@@ -345,6 +361,22 @@ def _nothing(evaluator: Interpreter, arguments: Arguments, span: Span | None) ->
     return NONE
 
 
+CALLBACKS = ("register_start_cb", "register_transition_cb", "register_termination_cb")
+"""The methods of a container that register functions which it calls while it runs."""
+
+
+def _called_later(name: str) -> Run:
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        me = arguments.get(0, "self")
+        if isinstance(me, Instance):
+            before = me.slots.get("$callbacks", TupleValue(()))
+            known = before.items if isinstance(before, TupleValue) else ()
+            evaluator.heap.set(me.slots, "$callbacks", TupleValue((*known, Const(name, span))))
+        return NONE
+
+    return run
+
+
 _STATE: Mapping[str, Run] = {
     "__init__": _state,
     "execute": _execute,
@@ -357,7 +389,6 @@ _STATE: Mapping[str, Run] = {
     "get_registered_output_keys": _registered("$outputs"),
     **dict.fromkeys(
         ("request_preempt", "service_preempt", "recall_preempt", "preempt_requested",
-         "register_start_cb", "register_transition_cb", "register_termination_cb",
          "set_initial_userdata", "check_consistency", "close"), _nothing,
     ),
 }  # fmt: skip
@@ -386,6 +417,7 @@ def _from_keys(evaluator: Interpreter, arguments: Arguments, span: Span | None) 
 
 _CONTAINER: Mapping[str, Run] = {
     **_STATE,
+    **{name: _called_later(name) for name in CALLBACKS},
     "open": _open,
     "close": _close,
     "set_initial_state": _set_initial,
@@ -426,6 +458,12 @@ _METHODS: Mapping[str, Mapping[str, Run]] = {
     },
     **{name: {**_STATE, "__init__": _ready(name)} for name in _READY},
 }  # fmt: skip
+
+
+def parameters_of(cls: Value) -> list[str]:
+    """The names of the parameters of a class of SMACH; empty for other ones."""
+    name = cls.name if isinstance(cls, LibraryClass) else ""
+    return [*_PARAMETERS.get(name, _OTHER_PARAMETERS.get(name, ()))]
 
 
 def method_of(cls: str, name: str) -> Native | None:

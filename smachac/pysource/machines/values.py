@@ -128,7 +128,8 @@ class DictValue:
 
 @dataclass(eq=False, slots=True)
 class Frame:
-    """The names of a function, a class or a module, and the frame around it."""
+    """The names of a function, a class or a module, and the frame around it. `made_by` is the call
+    of the function."""
 
     slots: Slots
     module: ModuleValue
@@ -138,6 +139,7 @@ class Frame:
     global_names: frozenset[str] = frozenset()
     outer_names: frozenset[str] = frozenset()
     kind: Literal["", "class", "comprehension"] = ""
+    made_by: Creation | None = None
 
 
 @dataclass(eq=False, slots=True)
@@ -194,14 +196,24 @@ class LibraryClass:
         return self.name.rpartition(".")[2]
 
 
+class Creation(NamedTuple):
+    """The call that made an object or a frame: its code, the frame in which it was evaluated, and
+    the arguments."""
+
+    node: ast.expr | None
+    frame: Frame
+    arguments: Arguments
+
+
 @dataclass(eq=False, slots=True)
 class Instance:
-    """An object of a class; `span` is the place of the call that made it."""
+    """An object of a class; `span` is the place of the call that made it, `made_by` the call."""
 
     cls: Class | LibraryClass
     slots: Slots
     span: Span | None = None
     opaque: bool = False
+    made_by: Creation | None = None
 
     def __post_init__(self) -> None:
         self.slots = OwnSlots(self.slots, self.cls if isinstance(self.cls, Class) else None)

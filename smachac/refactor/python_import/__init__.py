@@ -1,0 +1,1 @@
+"""Scripts made of machines in Python for SMACH (docs/existing.md)."""
