@@ -249,7 +249,12 @@ def _checked(made: ScriptFiles, folder: Path, file: PythonFile, disk: Disk) -> l
             for item in analysis.report:
                 name = relative(item.span.source.name, folder)
                 fault = item.severity is Severity.ERROR and item.code not in known
-                if fault and not item.kind.firm and name in made.texts and name.endswith(".yml"):
+                if (
+                    fault
+                    and not item.kind.unsuppressible
+                    and name in made.texts
+                    and name.endswith(".yml")
+                ):
                     places.setdefault(name, {}).setdefault(item.span.line, set()).add(item.code)
         if not places:
             break
