@@ -20,6 +20,7 @@ from typing import TypeAlias
 from smachac.diagnostics.source import Span
 from smachac.ir.nodes import Concurrence, Data, Expression, Leaf, Node, Struct
 from smachac.ir.nodes import Iterator as IteratorNode
+from smachac.ir.python_code import parse_code
 from smachac.ir.traversal import outcome_names, written_children
 from smachac.pysource.machines.evaluator import BudgetError, Evaluator
 from smachac.pysource.machines.graph import Graph
@@ -557,7 +558,7 @@ class _Names(ast.NodeTransformer):
         if place is None or not place.module:
             return node
         self.modules.add(place.module)
-        return ast.parse(f"{place.module}.{place.name}".rstrip("."), mode="eval").body
+        return parse_code(f"{place.module}.{place.name}".rstrip("."))
 
 
 UNWRITTEN = object()
