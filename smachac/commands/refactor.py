@@ -29,6 +29,7 @@ CONTAIN_EXAMPLES = f"""\
 examples:
   smachac contain main.yml LOAD StateMachine LOAD_TABLE LOAD_BLOCK   two states in sequence
   smachac contain main.yml LOOK Concurrence FIND WARM_UP             let both run at the same time
+  smachac contain main.yml LOAD StateMachine LOAD_TABLE LOAD_BLOCK --outcome RECOVER=lost
   smachac contain main.yml LOAD StateMachine LOAD_TABLE LOAD_BLOCK --diff   show a patch
 
 {EXIT_CODES}"""
@@ -89,6 +90,9 @@ def contain_arguments(parser: argparse.ArgumentParser) -> None:
                         help="StateMachine or Concurrence")  # fmt: skip
     parser.add_argument("states", metavar="STATE", nargs="+",
                         help="states of one container, by name or path")  # fmt: skip
+    parser.add_argument("--outcome", action="append", default=[], metavar="TARGET=NAME",
+                        help="the name of the new outcome that leads to a state or outcome"
+                        " (repeatable)")  # fmt: skip
     _common_arguments(parser)
 
 
@@ -229,7 +233,13 @@ def contain_command(arguments: Namespace) -> int:
     name, type_, states = arguments.name, arguments.type, arguments.states
     if not is_plain(name):
         return usage(swapped_arguments(arguments) or NEEDS_QUOTES.format(name))
-    return perform(arguments, lambda script: contain_states(script, name, type_, states))
+    outcomes: dict[str, str] = {}
+    for text in arguments.outcome:
+        target, equals, outcome = text.partition("=")
+        if not equals or not is_plain(outcome):
+            return usage(f"--outcome needs TARGET=NAME, not `{text}`")
+        outcomes[target] = outcome
+    return perform(arguments, lambda script: contain_states(script, name, type_, states, outcomes))
 
 
 def edit_command(arguments: Namespace) -> int:

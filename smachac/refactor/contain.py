@@ -9,8 +9,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 from smachac.diagnostics.source import Source
+from smachac.diagnostics.wording import listed
 from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine, Transition
 from smachac.ir.outcome_names import GOOD_OUTCOMES
 from smachac.ir.traversal import leads_to_child, outcome_names, outer_inputs, outer_outputs
@@ -78,9 +80,15 @@ def preset_keys(editor: ScriptEditor, inside: Sequence[Node]) -> set[str]:
 
 
 def plan_container(
-    parent: Node, inside: Sequence[Node], presets: set[str], name: str, kind: str
+    parent: Node,
+    inside: Sequence[Node],
+    presets: set[str],
+    name: str,
+    kind: str,
+    names: Mapping[str, str] = MappingProxyType({}),
 ) -> ContainPlan:
     """The container for some states of `parent`. `presets` are the userdata keys that they preset.
+    `names` are names of its outcomes, by the state or outcome outside where each leads.
 
     States without an interface must have an inferred one (open_states.py). Raises RefusedError.
     """
@@ -102,9 +110,10 @@ def plan_container(
     if kind == "Concurrence":
         _check_independence(inside)
         paths = list(_paths(inside, entry, targets))
-        exits, rules, default = _rules(paths, {name, *(child.name for child in inside)})
+        exits, rules, default = _rules(paths, {name, *(child.name for child in inside)}, names)
     else:
-        exits, ends = _exits(inside, targets, {name, *(child.name for child in inside)})
+        exits, ends = _exits(inside, targets, {name, *(child.name for child in inside)}, names)
+    _check_names(inside[0], exits, names)
     return ContainPlan(
         name=name,
         kind=kind,
@@ -119,6 +128,18 @@ def plan_container(
         default=default,
         on_error=_on_error(inside, ends) if kind != "Concurrence" else "",
     )
+
+
+def _check_names(first: Node, exits: Mapping[str, TargetName], names: Mapping[str, str]) -> None:
+    """Refuses a name for an outcome that the container does not have, or that is taken."""
+    known = {place[0]: outcome for outcome, place in exits.items()}
+    for target, outcome in names.items():
+        if target not in known:
+            message = f"no outcome of the container leads to `{target}`"
+            raise RefusedError(first.span, message, f"its outcomes lead to {listed(known)}")
+        if known[target] != outcome:
+            message = f"`{outcome}` is the name of a state inside or of another outcome"
+            raise RefusedError(first.span, message, "choose another name")
 
 
 def _by_on_error(child: Node, step: Transition) -> bool:
@@ -170,7 +191,10 @@ def _targets(parent: StateMachine, inside: Iterable[Node]) -> TransitionTargets:
 
 
 def _exits(
-    inside: Sequence[Node], targets: TransitionTargets, taken: set[str]
+    inside: Sequence[Node],
+    targets: TransitionTargets,
+    taken: set[str],
+    names: Mapping[str, str],
 ) -> tuple[dict[str, TargetName], dict[tuple[str, str], str]]:
     """The outcomes of a state machine around some states, one for each target.
 
@@ -183,11 +207,10 @@ def _exits(
         if not (place[1] and place[0] in mine):
             by_exit.setdefault(place, []).append(step)
     ends: dict[TargetName, str] = {}
-    for place in sorted(by_exit, key=lambda pair: pair[1]):
+    for place in sorted(by_exit, key=lambda pair: (pair[0] not in names, pair[1])):
         usual = Counter(outcome for _, outcome in by_exit[place]).most_common()
-        ends[place] = _unique_name(
-            [place[0]] if not place[1] else [word for word, _ in usual], taken
-        )
+        words = [place[0]] if not place[1] else [word for word, _ in usual]
+        ends[place] = _unique_name([names[place[0]]] if place[0] in names else words, taken)
     by_step = {step: ends[place] for place, steps in by_exit.items() for step in steps}
     return {ends[place]: place for place in by_exit}, by_step
 
@@ -285,7 +308,7 @@ def _paths(inside: Sequence[Node], entry: str, targets: TransitionTargets) -> It
 
 
 def _rules(
-    paths: Sequence[Path], taken: set[str]
+    paths: Sequence[Path], taken: set[str], names: Mapping[str, str]
 ) -> tuple[dict[str, TargetName], dict[str, dict[str, str]], str]:
     """The outcomes of a concurrence, with a rule for each former path through its states.
 
@@ -299,11 +322,13 @@ def _rules(
     for steps, place in sorted(paths, key=lambda path: path is not whole):
         if place == default:
             continue
-        end = _unique_name([place[0]] if not place[1] else [steps[-1][1]], taken)
+        word = names.get(place[0]) or (place[0] if not place[1] else steps[-1][1])
+        end = _unique_name([word], taken)
         exits[end] = place
         rules[end] = dict(steps)
     last = next(steps[-1][1] for steps, place in paths if place == default)
-    name = _unique_name([default[0]] if not default[1] else [last], taken)
+    word = names.get(default[0]) or (default[0] if not default[1] else last)
+    name = _unique_name([word], taken)
     exits[name] = default
     return exits, rules, name
 
@@ -380,15 +405,15 @@ def _remove_transitions(item: Item) -> None:
 def _written(plan: ContainPlan, items: list[Item]) -> Item:
     """The syntax tree of the container with its states."""
 
-    def listed(names: Sequence[str]) -> Collection:
+    def name_list(names: Sequence[str]) -> Collection:
         return Collection(False, True, -1, items=[Item(None, new_atom(name)) for name in names])
 
     rows: list[tuple[str, Collection | Atom]] = [
         ("template", new_atom(plan.kind)),
-        ("outcomes", listed(list(plan.exits))),
+        ("outcomes", name_list(list(plan.exits))),
     ]
-    rows += [("input_keys", listed(plan.inputs))] if plan.inputs else []
-    rows += [("output_keys", listed(plan.outputs))] if plan.outputs else []
+    rows += [("input_keys", name_list(plan.inputs))] if plan.inputs else []
+    rows += [("output_keys", name_list(plan.outputs))] if plan.outputs else []
     if plan.kind == "Concurrence":
         rows.append(("default_outcome", new_atom(plan.default)))
         rules = [

@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 
 from smachac.diagnostics.diagnostic import Severity
 from smachac.diagnostics.source import Source, Span
@@ -81,8 +82,15 @@ def rename_name(script: EditedScript, path: str, new: str, kind: str | None = No
     return script.proven(declared, lambda one, other: equal_after_rename(one, other, old, new))
 
 
-def contain_states(script: EditedScript, name: str, type_: str, states: Sequence[str]) -> Analysis:
-    """Move states of one container into a new container. The analysis afterwards."""
+def contain_states(
+    script: EditedScript,
+    name: str,
+    type_: str,
+    states: Sequence[str],
+    outcomes: Mapping[str, str] = MappingProxyType({}),
+) -> Analysis:
+    """Move states of one container into a new container. `outcomes` are names of its outcomes, by
+    the state or outcome outside where each leads. The analysis afterwards."""
     before = script.machine
     path, _ = find_state(before, states[0])
     above = path.rpartition("/")[0]
@@ -101,7 +109,7 @@ def contain_states(script: EditedScript, name: str, type_: str, states: Sequence
             raise different_container_error(before, around, text, known)
     inside = [child for child in parent.children if child.name in names]
     presets = preset_keys(script.editor(inside[0].span.source), inside)
-    made = plan_container(parent, inside, presets, name, type_)
+    made = plan_container(parent, inside, presets, name, type_, outcomes)
     contain(script.editor, made)
     after = script.proven(inside[0].span, lambda one, two: equal_after_contain(one, two, made))
     _no_worse(script.analysis, after, inside[0].span)
