@@ -83,4 +83,4 @@ def test_a_recorded_run_is_one_that_the_script_allows(
     other.write_text(changed, encoding="utf-8")
     assert main(["trace", "check", str(other), str(tmp_path / "mcap")]) == 1
     shown = capsys.readouterr().out
-    assert "`exhausted` of `patrol/TRY (retry)` does not lead to `patrol/BOTH`" in shown
+    assert "`exhausted` of the retry of `patrol/TRY` does not lead to `patrol/BOTH`" in shown
