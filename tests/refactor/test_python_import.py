@@ -78,7 +78,7 @@ def test_golden_project(
     compare_folder(written(folder / "project") | output, CASES / name / "expected")
 
 
-@pytest.mark.parametrize("runtime", ["bundled", "SMACH"])
+@pytest.mark.parametrize("runtime", ["bundled", pytest.param("SMACH", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", every(3, list(MACHINES)))
 def test_the_program_of_the_script_runs_as_the_machine(
     name: str, runtime: str, case: Callable[[str], Path]
