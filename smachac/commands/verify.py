@@ -46,6 +46,7 @@ examples:
   smachac verify main.yml                        compare the generated Python with the script
   smachac verify main.yml --targets python,cpp   compare the generated C++ too (needs a compiler)
   smachac verify main.yml --targets scxml        compare the SCXML document, on SCION (needs Node)
+  smachac verify main.yml --targets yasmin       compare the program for YASMIN (needs YASMIN)
   smachac verify main.yml --program pick.py      compare this file, edited by hand or built before
   smachac verify main.yml --header pick.hpp      compare this C++ header (needs a compiler)
   smachac verify main.yml --targets cpp --option mode=step   compare the stepped C++
@@ -57,7 +58,7 @@ exit codes: 0 success, 1 a program behaves differently, cannot be run, or the sc
 2 wrong usage, 70 a bug in smachac, 130 interrupted
 """
 
-TARGETS = ("python", "cpp", "scxml")
+TARGETS = ("python", "cpp", "scxml", "yasmin")
 """The targets whose programs `verify` can run."""
 
 SUFFIXES = {
@@ -71,8 +72,8 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
     parser.add_argument("script", type=as_path, help=SCRIPT)
     parser.add_argument("--targets", type=names, metavar="A,B,...",
-                        help="targets to compare: python, cpp, scxml (default: those of --program"
-                        " and --header, else python)")  # fmt: skip
+                        help="targets to compare: python, cpp, scxml, yasmin (default: those of"
+                        " --program and --header, else python)")  # fmt: skip
     parser.add_argument("--program", type=as_path, metavar="FILE",
                         help="compare this Python file, not a newly generated one")  # fmt: skip
     parser.add_argument("--header", type=as_path, metavar="FILE",
@@ -216,16 +217,21 @@ def _generated_player(
     in C++."""
     from smachac.driver import build
     from smachac.frontend.files import module_folders
-    from smachac.targets.python import TARGET
-    from smachac.verify.players import cpp, python, scxml
+    from smachac.targets import python as python_target
+    from smachac.targets import yasmin as yasmin_target
+    from smachac.verify.players import cpp, python, scxml, yasmin
 
     if target == "cpp":
         return cpp.player(machine, report, bounds, library)
     if target == "scxml":
         return scxml.player(machine, report, folders=[script.resolve().parent])
-    files = build(machine, TARGET, library, report)
+    folders = module_folders(script)
+    if target == "yasmin":
+        files = build(machine, yasmin_target.TARGET, library, report)
+        return yasmin.player(files, machine, folders=folders)
+    files = build(machine, python_target.TARGET, library, report)
     ((file, text),) = files.items() or [("", "")]
-    return python.player(file, text, machine, folders=module_folders(script))
+    return python.player(file, text, machine, folders=folders)
 
 
 def _file_player(

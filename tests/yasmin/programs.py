@@ -10,7 +10,6 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 from smachac.diagnostics.diagnostic import Report
@@ -18,6 +17,7 @@ from smachac.driver import build
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, Machine
 from smachac.targets.yasmin import TARGET
+from smachac.verify.players.yasmin import modules
 from tests.support.typed_machines import with_state_types
 from tests.yasmin import stand_in
 
@@ -38,22 +38,16 @@ def files_of(machine: Machine, library: Library) -> dict[str, str] | None:
 @contextmanager
 def loaded(files: dict[str, str], yasmin: Any = ENGINE) -> Iterator[Any]:
     """The module for YASMIN, with those that it imports."""
-    names = [*files]
-    texts = {name.removesuffix(".py"): files[name] for name in reversed(names)}
-    texts = {"smachac_yasmin": RUNTIME.read_text("utf-8"), **texts}
-    before = {name: sys.modules.get(name) for name in ("yasmin", *texts)}
+    before = sys.modules.get("yasmin")
     sys.modules["yasmin"] = yasmin
     try:
-        for name, text in texts.items():
-            module = sys.modules[name] = ModuleType(name)
-            exec(compile(text, f"{name}.py", "exec"), vars(module))
-        yield sys.modules[names[0].removesuffix(".py")]
+        with modules(files) as module:
+            yield module
     finally:
-        for name, earlier in before.items():
-            if earlier is None:
-                sys.modules.pop(name, None)
-            else:
-                sys.modules[name] = earlier
+        if before is None:
+            del sys.modules["yasmin"]
+        else:
+            sys.modules["yasmin"] = before
 
 
 def trace(files: dict[str, str], asked: tuple[str, int] = ("", 0)) -> list[dict[str, Any]]:

@@ -93,6 +93,18 @@ def _unplayable_errors() -> Iterator[None]:
 def trace_of(machine: Any, name: str, case: TestCase, sources: dict[str, str]) -> list[Event]:
     """The trace of one run; an error that ends the run is an event of it."""
     events: list[Event] = []
+    strict = trace.StrictScript(case.reads, partial(record_read, events), case.most)
+    prepared(machine, name, case, strict)
+    trace.attach(machine, name, events.append, sources, secret=case.secret)
+    if case.stopped:
+        machine.request_preempt()
+    with suppress(Exception):
+        machine.execute()
+    return events
+
+
+def prepared(machine: Any, name: str, case: TestCase, strict: trace.StrictScript) -> Any:
+    """The machine of SMACH `machine`, whose states perform the steps of a test case."""
     for path, key, value in case.samples:
         container = _state_at(machine, path)
         if key == ITEMS:
@@ -103,14 +115,8 @@ def trace_of(machine: Any, name: str, case: TestCase, sources: dict[str, str]) -
         machine.userdata[key] = value
     for path in case.rows:
         _close(_state_at(machine, path))
-    strict = trace.StrictScript(case.reads, partial(record_read, events), case.most)
     trace.script(machine, name, case.rows, strict)
-    trace.attach(machine, name, events.append, sources, secret=case.secret)
-    if case.stopped:
-        machine.request_preempt()
-    with suppress(Exception):
-        machine.execute()
-    return events
+    return machine
 
 
 def _close(state: Any) -> None:

@@ -1,0 +1,177 @@
+"""`smachac verify --targets yasmin`: paths played on the stand-in for YASMIN."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from smachac.commands.cli import main
+from smachac.ir.nodes import Checked
+from smachac.targets.yasmin import module_text
+from tests.support.examples import every
+from tests.yasmin import stand_in
+
+ROOT = Path(__file__).parents[2]
+EXAMPLES = [ROOT / "examples" / name for name in ("03_concurrence", "06_callbacks", "07_iterator")]
+CASES = [ROOT / "tests" / "cases" / name for name in ("sugar", "on_error", "containers")]
+
+ROUNDS = """\
+name: sm
+outcomes: [succeeded, aborted, preempted]
+input_keys: {goal: float}
+userdata: {sizes: [0.1, 0.2]}
+states:
+  - BOTH:
+      template: Concurrence
+      outcomes: [fine, mixed, bad]
+      default_outcome: bad
+      input_keys: [goal]
+      output_keys: [width]
+      outcome_map:
+        fine: {LEFT: done, RIGHT: done}
+        mixed: {LEFT: done, RIGHT: failed}
+      transitions: {fine: USE, mixed: BOTH, bad: aborted}
+      states:
+        - LEFT:
+            template: ScriptedState
+            outcomes: [done, failed]
+            input_keys: [goal]
+            output_keys: [width]
+            steps: [{outcome: done, set: {width: 0.1}}]
+        - RIGHT: {template: ScriptedState, outcomes: [done, failed]}
+  - USE:
+      template: ScriptedState
+      outcomes: [done, late, failed, preempted]
+      input_keys: [size, goal]
+      remapping: {size: width}
+      timeout: 1.0
+      retry: {max: 3, on: [failed]}
+      transitions:
+        {done: EACH, late: BOTH, exhausted: aborted, timeout: aborted, preempted: preempted}
+  - EACH:
+      for_each: {item: size, in: sizes}
+      template: ScriptedState
+      outcomes: [done, failed, preempted]
+      input_keys: [size]
+      transitions: {done: succeeded, failed: aborted, preempted: preempted}
+"""
+
+
+@pytest.fixture
+def _engine(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The stand-in is the YASMIN that is installed."""
+    monkeypatch.setitem(sys.modules, "yasmin", stand_in)  # type: ignore[arg-type]
+
+
+@pytest.fixture
+def rounds(tmp_path: Path) -> str:
+    script = tmp_path / "main.yml"
+    script.write_text(ROUNDS, "utf-8")
+    return str(script)
+
+
+@pytest.mark.usefixtures("_engine")
+@pytest.mark.parametrize(
+    "folder", every(2, [*EXAMPLES, *CASES]), ids=lambda folder: getattr(folder, "name", None)
+)
+def test_yasmin_does_what_the_interpreter_does(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    script = str(folder / "main.yml")
+    assert main(["verify", script, "--targets", "yasmin", "--paths", "60", "--format", "json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["targets"] == ["yasmin"]
+    assert told["agree"]
+    assert told["coverage"]["taken"] > 1
+
+
+@pytest.mark.usefixtures("_engine")
+def test_retries_time_limits_loops_and_stop_requests_agree(
+    rounds: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["verify", rounds, "--targets", "python,yasmin", "--paths", "80"]) == 0
+    out = capsys.readouterr().out
+    assert out.endswith("python: agrees\nyasmin: agrees\n")
+    assert re.search(r"[1-9]\d* stopped", out)
+
+
+def astray(text: str) -> str:
+    return text.replace('"late": "BOTH"', '"late": "aborted"')
+
+
+def mistaken(text: str) -> str:
+    return text.replace('("mixed", {"LEFT": "done"', '("mixed", {"LEFT": "failed"')
+
+
+def unmapped(text: str) -> str:
+    return text.replace('remapping={"size": "width"}', 'remapping={"size": "goal"}')
+
+
+def impatient(text: str) -> str:
+    return text.replace('again=["failed"]', "again=[]")
+
+
+def unstopped(text: str) -> str:
+    return text.replace('"preempted": "preempted"}', '"preempted": "aborted"}')
+
+
+@pytest.mark.usefixtures("_engine")
+@pytest.mark.parametrize("break_", [astray, mistaken, unmapped, impatient, unstopped])
+def test_a_wrong_program_is_found(
+    break_: Callable[[str], str],
+    rounds: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    changed = []
+
+    def broken(machine: Checked, program: str, package: str = "") -> str:
+        text = module_text(machine, program, package)
+        changed.append(break_(text) != text)
+        return break_(text)
+
+    monkeypatch.setattr("smachac.targets.yasmin.module_text", broken)
+    assert main(["verify", rounds, "--targets", "yasmin", "--paths", "80"]) == 1
+    assert changed == [True]
+    assert "yasmin differs from the interpreter" in capsys.readouterr().out
+
+
+def run_verify(rounds: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "smachac", "verify", rounds, "--targets", "yasmin"]
+    environment = {**os.environ, "PYTHONPATH": str(folder)}
+    return subprocess.run(
+        [*command, "--paths", "20"], capture_output=True, encoding="utf-8", env=environment
+    )
+
+
+def test_the_yasmin_of_this_python_is_used(rounds: str, tmp_path: Path) -> None:
+    text = Path(stand_in.__file__).read_text("utf-8")
+    (tmp_path / "yasmin.py").write_text(text, "utf-8")
+    done = run_verify(rounds, tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.endswith("yasmin: agrees\n")
+
+
+def test_without_yasmin_it_is_named(rounds: str, tmp_path: Path) -> None:
+    (tmp_path / "yasmin.py").write_text("raise ImportError('no shared library')\n", "utf-8")
+    done = run_verify(rounds, tmp_path)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert "YASMIN is not here: build it from its repository" in done.stderr
+    assert "(no shared library)" in done.stderr
+
+
+@pytest.mark.usefixtures("_engine")
+def test_a_program_that_does_not_load_is_named(
+    rounds: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("smachac.targets.yasmin.module_text", lambda *_: "import no_such_module\n")
+    assert main(["verify", rounds, "--targets", "yasmin"]) == 1
+    assert "the program for YASMIN cannot be loaded" in capsys.readouterr().err
+    assert "smachac_yasmin" not in sys.modules
