@@ -12,9 +12,11 @@ from pathlib import Path
 
 import pytest
 
+import smachac
 from smachac.commands.cli import main
 from smachac.ir.nodes import Checked
 from smachac.targets.yasmin import module_text
+from smachac.verify.players.yasmin import modules
 from tests.support.examples import every
 from tests.yasmin import stand_in
 
@@ -67,7 +69,7 @@ states:
 @pytest.fixture
 def _engine(monkeypatch: pytest.MonkeyPatch) -> None:
     """The stand-in is the YASMIN that is installed."""
-    monkeypatch.setitem(sys.modules, "yasmin", stand_in)  # type: ignore[arg-type]
+    monkeypatch.setitem(sys.modules, "yasmin", stand_in)
 
 
 @pytest.fixture
@@ -175,3 +177,42 @@ def test_a_program_that_does_not_load_is_named(
     assert main(["verify", rounds, "--targets", "yasmin"]) == 1
     assert "the program for YASMIN cannot be loaded" in capsys.readouterr().err
     assert "smachac_yasmin" not in sys.modules
+
+
+OWN = """\
+import smachac.runtime.smach as smach
+
+
+class One(smach.State):
+    def __init__(self):
+        super().__init__(outcomes=["ok"])
+
+    def execute(self, userdata):
+        return "ok"
+
+
+class Mine(smach.StateMachine):
+    def __init__(self):
+        super().__init__(outcomes=["ok"])
+        with self:
+            smach.StateMachine.add("ONE", One(), transitions={"ok": "ok"})
+"""
+
+
+@pytest.mark.usefixtures("_engine")
+def test_a_state_whose_class_is_a_container(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In the script it is one state; it also runs as one."""
+    script = tmp_path / "main.yml"
+    state = "{template: Mine, transitions: {ok: done}}"
+    script.write_text(f"name: own\noutcomes: [done]\nstates:\n  - X: {state}\n", "utf-8")
+    (tmp_path / "templates").mkdir()
+    interface = 'outcomes: [ok]\ncode: {python: "own_container:Mine"}\n'
+    (tmp_path / "templates" / "Mine.yml").write_text(interface, "utf-8")
+    (tmp_path / "own_container.py").write_text(OWN, "utf-8")
+    assert main(["verify", str(script), "--targets", "python,yasmin"]) == 0
+    assert capsys.readouterr().out.endswith("python: agrees\nyasmin: agrees\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    with modules(smachac.compile(script, "yasmin")) as module:
+        assert module.run().execute() == "done"

@@ -577,16 +577,16 @@ def _written(outcome):
 
 
 def _parts(machine, name):
-    """The states of a machine of SMACH that are no containers, and the initial values of its
-    containers, both by path."""
+    """The states of a machine of SMACH, and the initial values of its containers, both by path. A
+    class of the user can be a container: it is used as a state."""
     states, values = {}, {}
     todo = [(name, machine)]
     while todo:
         path, state = todo.pop()
-        if hasattr(state, "get_children"):
+        states[path] = state
+        children = getattr(state, "get_children", None)
+        if children is not None:
             held = state.userdata
             values[path] = {key: held[key] for key in sorted(held.keys())}
-            todo += [(f"{path}/{label}", one) for label, one in state.get_children().items()]
-        else:
-            states[path] = state
+            todo += [(f"{path}/{label}", one) for label, one in children().items()]
     return states, values

@@ -625,17 +625,17 @@ class Program:
 
 
 class Parts:
-    """The parts of a machine of SMACH: `states` are those that are no containers, `userdata` the
-    initial values of containers, both by path."""
+    """The parts of a machine of SMACH: its states, and in `userdata` the initial values of
+    containers, both by path. A class of the user can be a container: it is used as a state."""
 
     def __init__(self, machine, name):
         self.states, self.userdata = {}, {}
         todo = [(name, machine)]
         while todo:
             path, state = todo.pop()
-            if hasattr(state, "get_children"):
+            self.states[path] = state
+            children = getattr(state, "get_children", None)
+            if children is not None:
                 held = state.userdata
                 self.userdata[path] = {key: held[key] for key in sorted(held.keys())}
-                todo += [(f"{path}/{label}", one) for label, one in state.get_children().items()]
-            else:
-                self.states[path] = state
+                todo += [(f"{path}/{label}", one) for label, one in children().items()]

@@ -62,7 +62,7 @@ def modules(files: Mapping[str, str], *folders: Path) -> Iterator[Any]:
     """The first of generated modules, which imports the others and the runtime for YASMIN. Inside
     the context they can import modules of the user from `folders`."""
     runtime = resources.files("smachac.runtime").joinpath(f"yasmin/{RUNTIME}")
-    texts = {RUNTIME: runtime.read_text("utf-8"), **dict(reversed(files.items()))}
+    texts = {RUNTIME: runtime.read_text("utf-8"), **dict(reversed([*files.items()]))}
     names = [Path(name).stem for name in texts]
     before = {name: sys.modules.pop(name) for name in names if name in sys.modules}
     with ExitStack() as stack:
