@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 
+import smachac
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
 from smachac.driver import analyse, build
@@ -24,7 +25,8 @@ from smachac.ir.nodes import Checked
 from smachac.runtime import smach
 from smachac.targets.flexbe import TARGET
 from tests.flexbe import stand_in
-from tests.flexbe.programs import loaded, ready
+from tests.flexbe.programs import loaded, ready, trace
+from tests.yasmin.test_verify import OWN
 
 ROOT = Path(__file__).parents[2]
 LIBRARY = disk_library(ROOT / "main.yml", [])
@@ -590,3 +592,20 @@ def test_names_of_machines(name: str, package: str, class_: str) -> None:
         run = ready(made)
         at_visit(run._state_machine, f"{name}/BOTH/SLEEP", by_flag)
         assert run.execute() == "preempted"
+
+
+def test_a_state_whose_class_is_a_container(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In the script it is one state; it also runs as one."""
+    script = tmp_path / "main.yml"
+    state = "{template: Mine, transitions: {ok: done}}"
+    script.write_text(f"name: own\noutcomes: [done]\nstates:\n  - X: {state}\n", "utf-8")
+    (tmp_path / "templates").mkdir()
+    interface = 'outcomes: [ok]\ncode: {python: "own_container_flexbe:Mine"}\n'
+    (tmp_path / "templates" / "Mine.yml").write_text(interface, "utf-8")
+    (tmp_path / "own_container_flexbe.py").write_text(OWN, "utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    events = trace(smachac.compile(script, "flexbe"))
+    assert [event["path"] for event in events] == ["own", "own/X", "own/X", "own/X", "own"]
+    assert events[-1]["outcome"] == "done"

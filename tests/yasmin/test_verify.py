@@ -104,6 +104,38 @@ def test_retries_time_limits_loops_and_stop_requests_agree(
     assert re.search(r"[1-9]\d* stopped", out)
 
 
+SECRET = """\
+name: door
+outcomes: [open]
+userdata:
+  pin: {type: str, value: "1", secret: true}
+states:
+  - ENTER:
+      template: ScriptedState
+      outcomes: [done]
+      input_keys: [code]
+      output_keys: [code]
+      remapping: {code: pin}
+      steps: [{outcome: done, set: {code: "2"}}]
+      transitions: {done: SAY}
+  - SAY:
+      template: CallbacksState
+      input_keys: [code]
+      output_keys: [code]
+      remapping: {code: pin}
+      callbacks: {code: 'lambda ud: ud.code + "#"'}
+      transitions: {succeeded: open}
+"""
+
+
+@pytest.mark.usefixtures("_engine")
+def test_secret_values_are_hidden(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    script = tmp_path / "main.yml"
+    script.write_text(SECRET, "utf-8")
+    assert main(["verify", str(script), "--targets", "yasmin"]) == 0
+    assert capsys.readouterr().out.endswith("yasmin: agrees\n")
+
+
 def astray(text: str) -> str:
     return text.replace('"late": "BOTH"', '"late": "aborted"')
 
