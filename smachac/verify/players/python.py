@@ -38,7 +38,7 @@ def player(name: str, text: str, machine: Machine, *, folders: Sequence[Path]) -
 
     def play(cases: Sequence[TestCase]) -> Iterator[list[Event]]:
         with (
-            _unplayable_errors(),
+            unplayable_errors("the Python program"),
             ros_stand_ins(text, machine),
             loaded(name, text, *folders) as module,
             quiet(module["smach"], hidden),
@@ -79,14 +79,14 @@ def _machine_of(module: dict[str, Any], machine: Machine) -> Any:
 
 
 @contextmanager
-def _unplayable_errors() -> Iterator[None]:
+def unplayable_errors(program: str) -> Iterator[None]:
     """Convert errors outside the machine to UnplayableError, and send output of the program to
     stderr."""
     try:
         with redirect_stdout(sys.stderr):
             yield
     except Exception as error:
-        words = f"the Python program cannot be loaded: {failure_text(error)}"
+        words = f"{program} cannot be loaded: {failure_text(error)}"
         raise UnplayableError(words) from error
 
 

@@ -10,18 +10,19 @@ import copy
 import logging
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager, redirect_stdout, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
-from importlib import import_module, resources
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from smachac.ir.nodes import Machine
 from smachac.runtime.tracing import trace
 from smachac.runtime.tracing.writer import SECRET, trace_value
-from smachac.targets.python.runner import failure_text, hidden, loaded, quiet
+from smachac.targets.python.runner import hidden, loaded, quiet
+from smachac.targets.runtime_files import runtime_files
 from smachac.targets.yasmin import RUNTIME
-from smachac.verify.players.python import prepared
+from smachac.verify.players.python import prepared, unplayable_errors
 from smachac.verify.players.ros_stand_ins import built, ros_stand_ins
 from smachac.verify.python_values import ITEMS
 from smachac.verify.test_case import Event, Player, TestCase, UnplayableError, record_read
@@ -45,7 +46,7 @@ def player(files: Mapping[str, str], machine: Machine, *, folders: Sequence[Path
         except ImportError as error:
             raise UnplayableError(f"{MISSING} ({error})") from error
         with (
-            _unplayable_errors(),
+            unplayable_errors("the program for YASMIN"),
             ros_stand_ins("\n".join(files.values()), machine),
             modules(files, *folders) as module,
             quiet(module.smach_program.smach, hidden),
@@ -61,8 +62,8 @@ def player(files: Mapping[str, str], machine: Machine, *, folders: Sequence[Path
 def modules(files: Mapping[str, str], *folders: Path) -> Iterator[Any]:
     """The first of generated modules, which imports the others and the runtime for YASMIN. Inside
     the context they can import modules of the user from `folders`."""
-    runtime = resources.files("smachac.runtime").joinpath(f"yasmin/{RUNTIME}")
-    texts = {RUNTIME: runtime.read_text("utf-8"), **dict(reversed([*files.items()]))}
+    runtime = runtime_files({RUNTIME: f"yasmin/{RUNTIME}"})
+    texts = {**runtime, **dict(reversed([*files.items()]))}
     names = [Path(name).stem for name in texts]
     before = {name: sys.modules.pop(name) for name in names if name in sys.modules}
     with ExitStack() as stack:
@@ -70,18 +71,6 @@ def modules(files: Mapping[str, str], *folders: Path) -> Iterator[Any]:
         for name, text in texts.items():
             stack.enter_context(loaded(name, text, *folders, importable=True))
         yield sys.modules[names[-1]]
-
-
-@contextmanager
-def _unplayable_errors() -> Iterator[None]:
-    """Convert errors outside the machine to UnplayableError, and send output of the program to
-    stderr."""
-    try:
-        with redirect_stdout(sys.stderr):
-            yield
-    except Exception as error:
-        words = f"the program for YASMIN cannot be loaded: {failure_text(error)}"
-        raise UnplayableError(words) from error
 
 
 @contextmanager
