@@ -1,4 +1,4 @@
-"""Code of the script: what its text says to Python and to the portable subset, read once."""
+"""Code of the script: its text with the trees of Python and of the portable subset, parsed once."""
 
 from __future__ import annotations
 

@@ -133,16 +133,13 @@ def _edited(text: str, edits: list[tuple[Span, str]]) -> str:
     """The text with words replaced; a word keeps its quotes."""
     for span, word in sorted(edits, key=lambda edit: edit[0].start, reverse=True):
         quote = span.text[:1] if span.text[:1] in ("'", '"') else ""
-        new = word if not word or (is_plain(word) and not quote) else quoted(word)
+        new = word
+        if quote == '"' or (word and not quote and not is_plain(word)):
+            new = json.dumps(word, ensure_ascii=False)
         if quote == "'":
             new = "'" + word.replace("'", "''") + "'"
         text = text[: span.start] + new + text[span.end :]
     return text
-
-
-def quoted(word: str) -> str:
-    """A word in double quotes."""
-    return json.dumps(word, ensure_ascii=False)
 
 
 def _scenario_edits(tree: Map, changes: Changes) -> Edits:

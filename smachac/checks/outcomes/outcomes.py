@@ -238,8 +238,8 @@ def _unhandled_outcomes(path: str, container: Linear, lacking: Unhandled) -> Ite
 
 
 class _Steps(NamedTuple):
-    """The transitions in a container. `order` has the number of each state, `alike` the targets of
-    each outcome in their order, `used` the names of all targets."""
+    """The transitions in a container: the names of its states, with their numbers (`order`); the
+    numbers of the targets by outcome (`alike`); the names of all targets (`used`)."""
 
     names: Sequence[str]
     order: Mapping[str, int]

@@ -1,6 +1,5 @@
-"""Rules over requests to stop: a state answers one and the task goes on (SM209, SM211), or the
-machine reports the stop as a success (SM210). The paths after an answer are those of
-analysis/stop_paths.py."""
+"""Rules on requests to stop. SM209 and SM211: after a state has serviced a request, the task goes
+on. SM210: the machine ends with a success. The paths are those of analysis/stop_paths.py."""
 
 from __future__ import annotations
 
