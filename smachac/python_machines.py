@@ -1,4 +1,4 @@
-"""Python files with machines for SMACH: read, checked by the rules, suppressed."""
+"""Python files with machines for SMACH or YASMIN: read, checked by the rules, suppressed."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from smachac.checks import RULES, check_machine
+from smachac.checks.rule import Rule
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, grouped, in_order
 from smachac.diagnostics.severities import apply_severities
 from smachac.diagnostics.source import Source, Span, Word
@@ -29,6 +30,7 @@ from smachac.pysource.machines.constructions import Constructions, constructions
 from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import Evaluator
 from smachac.pysource.machines.graph import Graph, graphs
+from smachac.pysource.machines.libraries import FRAMEWORKS
 from smachac.pysource.machines.project import Repository, module_text
 from smachac.pysource.machines.roots import Roots, machines_of, variants_of
 from smachac.pysource.machines.values import UseFault
@@ -128,13 +130,13 @@ class PythonProject:
         with deep_recursion():
             several = machines_of(repository, evaluator, str(path), made_first)
             whole = [graph for some in several for graph in some]
-            findings = [item for graph in whole for item in check_machine(graph.machine, rules)]
+            findings = [item for graph in whole for item in _checked(graph, rules)]
             findings = _in_file(findings, str(path))
             variants: list[Graph] = []
             if any(item.code in IN_ALL and (everything or _cannot_work(item)) for item in findings):
                 some = variants_of(repository, evaluator, str(path), made)
                 variants = [graph for several in some for graph in several]
-                more = (item for graph in variants for item in check_machine(graph.machine, rules))
+                more = (item for graph in variants for item in _checked(graph, rules))
                 own = _in_file([*more], str(path))
                 findings += [item for item in own if item.code in IN_ALL]
         report += _true_of_all(findings, [graph.machine for graph in (*whole, *variants)])
@@ -229,7 +231,7 @@ def python_files(folder: Path) -> Iterator[Path]:
 
 
 def files_with_machines(folder: Path, disk: Disk) -> list[Path]:
-    """The Python files below a folder whose text names a container of SMACH."""
+    """The Python files below a folder whose text names a container of a framework."""
     found = []
     for path in python_files(folder):
         source = disk.read(path, [])
@@ -239,10 +241,12 @@ def files_with_machines(folder: Path, disk: Disk) -> list[Path]:
 
 
 def builds_machines(source: Source) -> bool:
-    """Whether the text of a Python file names SMACH and one of its containers."""
+    """Whether the text of a Python file names a framework and one of its containers."""
     text = source.text
-    return "smach" in text and any(
-        word in text for word in ("StateMachine", "Concurrence", "Sequence", "Iterator")
+    return any(
+        framework.packages[0] in text
+        and any(name.rpartition(".")[2] in text for name in framework.containers)
+        for framework in FRAMEWORKS
     )
 
 
@@ -263,6 +267,18 @@ def _unreadable(source: Source) -> Diagnostic:
     message = f"this is not valid Python 3: {word.text.partition('. Maybe you meant')[0]}"
     help = "correct the code at the mark"
     return errors.unreadable_module(word.span, message, help)
+
+
+def _checked(graph: Graph, rules: Sequence[Rule]) -> Iterator[Diagnostic]:
+    """The findings of rules about a machine: all, or for a framework with other rules the errors
+    that are faults in it too, with their effects in its terms."""
+    effects = graph.framework.effects
+    for item in check_machine(graph.machine, rules):
+        if effects is None:
+            yield item
+        elif item.severity is Severity.ERROR and item.code in effects:
+            effect = effects[item.code] or item.effect
+            yield replace(item, finding=replace(item.finding, effect=effect))
 
 
 def _cannot_work(item: Diagnostic) -> bool:
@@ -304,8 +320,8 @@ def _true_of_all(findings: Report, machines: Sequence[Machine]) -> Iterator[Diag
 
 
 def _of_uses(faults: Sequence[UseFault]) -> Iterator[Diagnostic]:
-    """The findings about wrong uses of SMACH; the names that a module lacks are one for each file
-    that uses them."""
+    """The findings about wrong uses of a framework; the names that a module lacks are one for each
+    file that uses them."""
     members: dict[tuple[Source, str], list[Word]] = {}
     for fault in dict.fromkeys(faults):
         name = fault.names[0] if fault.names else ""
@@ -319,6 +335,10 @@ def _of_uses(faults: Sequence[UseFault]) -> Iterator[Diagnostic]:
                 members.setdefault(which, []).append(Word(name, fault.span))
             case "repeated key":
                 yield errors.repeated_key(Word(name, fault.span), fault.other)
+            case "state named as outcome":
+                yield errors.state_named_as_outcome(Word(name, fault.span))
+            case "no such start state":
+                yield errors.no_start_state(Word(name, fault.span))
     for (_, module), words in members.items():
         yield errors.missing_member(module, words)
 

@@ -1,4 +1,4 @@
-"""Findings about machines that are written in Python for SMACH, beside those of the rules."""
+"""Findings about machines that are written in Python, beside those of the rules."""
 
 from __future__ import annotations
 
@@ -218,11 +218,80 @@ def unreadable_module(span: Span, message: str, help: str) -> Finding:
                    effect="nothing in this file is checked")  # fmt: skip
 
 
+@problem(
+    "SM806",
+    "state-named-as-outcome",
+    Severity.ERROR,
+    unsuppressible=False,
+    effect="`add_state` raises an exception: the program stops",
+)
+def state_named_as_outcome(word: Word) -> Finding:
+    """A state of a machine for YASMIN has the name of an outcome of the machine.
+
+    YASMIN refuses such a state, because a transition to this name would have two meanings.
+
+    Wrong:
+        import yasmin
+
+        sm = yasmin.StateMachine(outcomes=["done"])
+        sm.add_state("done", yasmin.CbState(["ok"], lambda blackboard: "ok"), {"ok": "done"})
+
+    Right:
+        import yasmin
+
+        sm = yasmin.StateMachine(outcomes=["done"])
+        sm.add_state("STOP", yasmin.CbState(["ok"], lambda blackboard: "ok"), {"ok": "done"})
+    """
+    return Finding(
+        span=word.span,
+        message=f"`{word.text}` is also an outcome of this machine",
+        arguments=(word.text,),
+        help="give the state another name, also in the transitions that lead to it",
+    )
+
+
+@problem(
+    "SM807",
+    "no-start-state",
+    Severity.ERROR,
+    unsuppressible=False,
+    effect="`set_start_state` raises an exception: the program stops",
+)
+def no_start_state(word: Word) -> Finding:
+    """The start state of a machine for YASMIN is not one of the states added before.
+
+    Exactly: also a state that is added later. Without `set_start_state` the machine starts with
+    the state that is added first.
+
+    Wrong:
+        import yasmin
+
+        sm = yasmin.StateMachine(outcomes=["done"])
+        sm.add_state("STOP", yasmin.CbState(["ok"], lambda blackboard: "ok"), {"ok": "done"})
+        sm.set_start_state("STOPP")
+
+    Right:
+        import yasmin
+
+        sm = yasmin.StateMachine(outcomes=["done"])
+        sm.add_state("STOP", yasmin.CbState(["ok"], lambda blackboard: "ok"), {"ok": "done"})
+        sm.set_start_state("STOP")
+    """
+    return Finding(
+        span=word.span,
+        message=f"the machine has no state `{word.text}` yet",
+        arguments=(word.text,),
+        help="correct the name, or add the state before this line",
+    )
+
+
 PROBLEMS: tuple[Problem[...], ...] = (
     text_as_list,
     shared_transitions,
     missing_member,
     repeated_key,
     unreadable_module,
+    state_named_as_outcome,
+    no_start_state,
 )
 """The problems of this module, in the order of their codes."""

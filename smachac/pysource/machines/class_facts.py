@@ -13,6 +13,7 @@ from smachac.diagnostics.source import Source, Span
 from smachac.ir.class_facts import ClassFacts
 from smachac.pysource.class_reader import NO_EXECUTE, facts_of, facts_of_callback
 from smachac.pysource.machines.dead_code import Choice, choices, live_facts, unknown_places
+from smachac.pysource.machines.libraries import library_source
 from smachac.pysource.machines.project import Repository
 from smachac.pysource.machines.proven_reads import doubtful_places
 from smachac.pysource.machines.state_comments import StateComments
@@ -112,4 +113,4 @@ class ClassReader:
             user = ModuleValue("", {}, file=file)
             self.files[file] = self.repository.file_of(".".join(stem.parts), user)
         found = self.files[file]
-        return self.repository.read(found) if found is not None else None
+        return self.repository.read(found) if found is not None else library_source(file)

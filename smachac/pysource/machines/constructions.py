@@ -24,9 +24,10 @@ from smachac.ir.python_code import parse_code
 from smachac.ir.traversal import outcome_names, written_children
 from smachac.pysource.machines.evaluator import BudgetError, Evaluator
 from smachac.pysource.machines.graph import Graph
+from smachac.pysource.machines.libraries import parameters_of
 from smachac.pysource.machines.origins import Origins
 from smachac.pysource.machines.project import Repository
-from smachac.pysource.machines.smach_library import parameters_of, takes_node
+from smachac.pysource.machines.smach_library import takes_node
 from smachac.pysource.machines.values import (
     Arguments,
     Class,

@@ -85,6 +85,7 @@ class Project(Protocol):
     def new_object(
         self, evaluator: Evaluator, cls: LibraryClass, arguments: Arguments
     ) -> Value: ...
+    def is_of_framework(self, cls: Value) -> bool: ...
     def may_set(self, name: str) -> bool: ...
 
 
@@ -99,8 +100,8 @@ class _Region:
 
 
 class Evaluator:
-    """Evaluates modules, functions and classes; `made` are the objects of SMACH's classes in the
-    order in which they were made, `called` the functions that were called, `generators` whether one
+    """Evaluates modules, functions and classes; `made` are the objects of the classes of frameworks
+    in the order in which they were made, `called` the functions that were called, `generators` whether one
     of them is a generator. `exhausted`: a part of the file took too many steps. `assumed` are the
     values of conditions that are not known, by their code, `used` those that were needed."""
 
@@ -1513,14 +1514,14 @@ class Evaluator:
         node: ast.expr | None = None,
     ) -> Value:  # fmt: skip
         """A new object of a class."""
-        if isinstance(cls, LibraryClass) and not cls.name.startswith("smach"):
+        if isinstance(cls, LibraryClass) and not self.project.is_of_framework(cls):
             return self.project.new_object(self, cls, arguments)
         if isinstance(cls, Class) and self.is_enumeration(cls):
             return self._member(cls, arguments)
         order = self.classes(cls)
         opaque = any(isinstance(base, Unknown | OneOf) for base in order)
         made = Instance(cls, {}, span, opaque, Creation(node, frame, arguments))
-        if any(isinstance(base, LibraryClass) and base.name.startswith("smach") for base in order):
+        if any(map(self.project.is_of_framework, order)):
             self.made.append(made)
         if isinstance(cls, Class) and cls.is_dataclass and "__init__" not in cls.slots:
             self._fill(made, cls, arguments, frame)

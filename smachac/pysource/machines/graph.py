@@ -37,11 +37,14 @@ from smachac.ir.nodes import (
 from smachac.ir.traversal import outer_inputs
 from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import Evaluator
+from smachac.pysource.machines.framework import Framework
 from smachac.pysource.machines.heap import Added, Children
+from smachac.pysource.machines.libraries import framework_of
 from smachac.pysource.machines.proven_reads import doubtful_in
 from smachac.pysource.machines.roots import Roots
 from smachac.pysource.machines.state_comments import StateComments
 from smachac.pysource.machines.values import (
+    NONE,
     UNKNOWN,
     Arguments,
     Class,
@@ -99,6 +102,7 @@ class Graph(NamedTuple):
 
     machine: Machine
     coverage: Coverage
+    framework: Framework
     objects: Mapping[tuple[str, ...], Instance] = {}
 
 
@@ -148,7 +152,11 @@ class _Builder:
             digest="",
             state_types=self.types,
         )
-        return Graph(machine, Coverage(self.states, tuple(self.unknown)), objects)
+        coverage = Coverage(self.states, tuple(self.unknown))
+        return Graph(machine, coverage, self.framework(container), objects)
+
+    def framework(self, made: Instance) -> Framework:
+        return framework_of(self.evaluator.classes(made.cls))
 
     def _name(self, container: Instance) -> str:
         if isinstance(container.cls, Class):
@@ -229,8 +237,9 @@ class _Builder:
         """Whether a class changes how states are added or run."""
         if made.opaque:
             return True
+        overridden = self.framework(made).overridden
         return any(
-            isinstance(cls, Class) and not {"add", "execute"}.isdisjoint(cls.slots)
+            isinstance(cls, Class) and not overridden.isdisjoint(cls.slots)
             for cls in self.evaluator.classes(made.cls)
         )
 
@@ -347,7 +356,7 @@ class _Builder:
         if not isinstance(value, Instance) or "$outcomes" not in value.slots:
             reason = self._missing(value, added)
             return self.open_leaf(name, span, added, reason, self._faults(value))
-        outcomes = self.names(value.slots.get("$outcomes"), span)
+        outcomes = self._outcomes(value, added)
         inputs = sequence(value.slots.get("$inputs"))
         outputs = sequence(value.slots.get("$outputs"))
         if outcomes is None or inputs is None or outputs is None or value.opaque:
@@ -369,6 +378,15 @@ class _Builder:
             name=name, type=type_, outcomes=tuple(Outcome(name=t, span=p) for t, p in outcomes),
             inputs=in_keys, outputs=out_keys, span=span, class_facts=facts,
         )  # fmt: skip
+
+    def _outcomes(self, value: Instance, added: Added) -> list[tuple[str, Span]] | None:
+        """The outcomes of a state with those optional ones that transitions name; in a concurrence
+        with all, as its rules can name them. None: not known."""
+        outcomes = self.names(value.slots.get("$outcomes"), added.span)
+        named = None if added.kind == "concurrence" else _outcomes_of(added)
+        optional = self.names(value.slots.get("$optional", TupleValue(())), added.span) or []
+        more = [pair for pair in optional if named is None or pair[0] in named]
+        return outcomes and [*{**dict(more), **dict(outcomes)}.items()]
 
     def _missing(self, value: Value, added: Added) -> str:
         """Why the type of a state is not known."""
@@ -503,6 +521,7 @@ class _Children:
         self.made = made
         self.kind = kind
         self.outcomes = outcomes
+        self.jumps = builder.framework(made).jumps
         self.incomplete = not complete
         self.labels: set[str] = set()
         self.outside: dict[str, Span] = {}
@@ -519,7 +538,9 @@ class _Children:
                 self.builder.unknown.append((one.span, "a condition that is not known adds it"))
         if any(_text(one.label) is None for one in added) or (added and added[0].possible):
             self.incomplete = True
-        if self.outcomes is None:
+        initial = self.made.slots.get("$initial", NONE)
+        first = (sequence(initial) or (UNKNOWN,))[0]
+        if self.outcomes is None or not (_is_none(initial) or _text(first) is not None):
             self.incomplete = True
         found: list[Node] = []
         for at, one in enumerate(known):
@@ -548,8 +569,7 @@ class _Children:
         can be reached, and each key can have a value."""
         if self.incomplete:
             return ELSEWHERE
-        wanted = sequence(self.made.slots.get("$initial"))
-        name = _text(wanted[0]) if wanted else None
+        name = _text((sequence(self.made.slots.get("$initial")) or (None,))[0])
         if name is not None and name in self.labels:
             return name
         return _text(added[0].label) or "" if added else ""
@@ -586,7 +606,7 @@ class _Children:
         for name in names:
             if name in done:
                 continue
-            if name in ends:
+            if name in ends or (name in self.labels and self.jumps):
                 yield Transition(outcome=name, target=name, origin="implicit", span=span)
             elif self.outcomes is None:
                 yield Transition(outcome=name, target=ELSEWHERE, span=span, target_span=span)

@@ -10,7 +10,12 @@ from pathlib import PurePath
 
 from smachac.diagnostics.source import Source
 from smachac.pysource.machines.evaluator import BudgetError, Evaluator
-from smachac.pysource.machines.smach_library import library_module, method_of, new_object
+from smachac.pysource.machines.libraries import (
+    library_module,
+    method_of,
+    new_object,
+    of_framework,
+)
 from smachac.pysource.machines.values import (
     Arguments,
     Const,
@@ -47,6 +52,9 @@ class Repository:
 
     def method_of(self, cls: str, name: str) -> Native | None:
         return method_of(cls, name)
+
+    def is_of_framework(self, cls: Value) -> bool:
+        return of_framework(cls) is not None
 
     def new_object(self, evaluator: Evaluator, cls: LibraryClass, arguments: Arguments) -> Value:
         return new_object(evaluator, cls, arguments)

@@ -10,8 +10,8 @@ from typing import TypeVar
 from smachac.diagnostics.source import Span
 from smachac.pysource.machines.evaluator import BudgetError, Evaluator
 from smachac.pysource.machines.heap import Added, Children
+from smachac.pysource.machines.libraries import FRAMEWORKS, is_container, is_container_class
 from smachac.pysource.machines.project import Repository
-from smachac.pysource.machines.smach_library import CONTAINERS, is_container
 from smachac.pysource.machines.values import (
     UNKNOWN,
     Arguments,
@@ -19,7 +19,6 @@ from smachac.pysource.machines.values import (
     Frame,
     Function,
     Instance,
-    LibraryClass,
     ModuleValue,
     Value,
     alternatives,
@@ -29,7 +28,11 @@ from smachac.records import dataclass
 
 T = TypeVar("T")
 
-_WORDS = frozenset(name.rpartition(".")[2] for name in CONTAINERS)
+_WORDS = frozenset(
+    word
+    for framework in FRAMEWORKS
+    for word in (*(name.rpartition(".")[2] for name in framework.containers), *framework.adds)
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,7 +154,7 @@ def _of_class(
     evaluator: Evaluator, cls: Class, module: ModuleValue, frame: Frame, *, variants: bool
 ) -> Iterator[Callable[[], object]]:
     order = evaluator.classes(cls)
-    is_own = any(isinstance(base, LibraryClass) and base.name in CONTAINERS for base in order)
+    is_own = any(map(is_container_class, order))
     maker = cls.slots.get("__init__")
     is_made = isinstance(maker, Function) and maker.node in evaluator.called and not variants
     if is_made or not (is_own or _builds(cls.node, module)):
@@ -190,16 +193,14 @@ def _unknown(function: Function, *, variants: bool) -> Arguments:
 
 
 def _builds(node: ast.AST, module: ModuleValue) -> bool:
-    """Whether code names a container class of SMACH, or one of the module that is derived from
-    one."""
+    """Whether code names a container class of a framework, or one of the module that is derived
+    from one, or a method that adds states to any container."""
     for part in walk_code(node):
         name = part.attr if isinstance(part, ast.Attribute) else getattr(part, "id", None)
         if name in _WORDS:
             return True
         value = module.slots.get(name) if isinstance(part, ast.Name) else None
-        if isinstance(value, Class) and any(
-            isinstance(base, LibraryClass) and base.name in CONTAINERS for base in value.order
-        ):
+        if isinstance(value, Class) and any(map(is_container_class, value.order)):
             return True
     return False
 

@@ -1,16 +1,28 @@
-"""The classes and functions of SMACH, smach_ros and Python's library that the evaluator models.
+"""The classes and functions of SMACH and smach_ros that the evaluator models.
 
 The signatures are those of executive_smach 2.5.2 (ROS 1) and 3.0.3 (ROS 2).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
 
 from smachac.diagnostics.source import Span
-from smachac.pysource.machines.builtins import MAKERS
-from smachac.pysource.machines.heap import Added, Children
+from smachac.pysource.machines.framework import (
+    Framework,
+    Run,
+    add_child,
+    classes,
+    copied,
+    executed,
+    listed,
+    make_container,
+    names_in,
+    nothing,
+    set_interface,
+    together,
+)
+from smachac.pysource.machines.heap import Added
 from smachac.pysource.machines.values import (
     NONE,
     UNKNOWN,
@@ -22,9 +34,7 @@ from smachac.pysource.machines.values import (
     Interface,
     Interpreter,
     LibraryClass,
-    ListValue,
     Method,
-    ModuleValue,
     Native,
     Partial,
     TupleValue,
@@ -34,14 +44,6 @@ from smachac.pysource.machines.values import (
     alternatives,
     sequence,
 )
-
-Run = Callable[[Interpreter, Arguments, "Span | None"], Value]
-
-CONTAINERS = ("smach.StateMachine", "smach.Sequence", "smach.Concurrence", "smach.Iterator")
-"""The container classes of SMACH."""
-
-STATIC = frozenset(["add", "add_auto", "set_contained_state"])
-"""The methods that add to the container that `with` has opened."""
 
 _READY = {
     "smach_ros.SimpleActionState": ("succeeded", "aborted", "preempted"),
@@ -86,42 +88,15 @@ _READ = ("goal_key", "goal_slots", "request_key", "request_slots")
 _WRITTEN = ("result_key", "result_slots", "response_key", "response_slots")
 
 
-def _names(evaluator: Interpreter, value: Value | None, span: Span | None) -> Value:
-    """A list of names. Of a text, each letter is a name: a fault."""
-    if value is None:
-        return TupleValue(())
-    if isinstance(value, Const) and isinstance(value.value, str) and value.value and span:
-        place = value.span or span
-        evaluator.faults.append(UseFault("text as list", place, (value.value,)))
-    return value
-
-
-def _joined(*values: Value) -> Value:
-    parts = [sequence(value) for value in values]
-    if any(part is None for part in parts):
-        return UNKNOWN
-    return TupleValue(tuple(item for part in parts for item in part or ()))
-
-
 def _state(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
     me = arguments.get(0, "self")
     if isinstance(me, Instance):
         outcomes, inputs, outputs, both = (
-            _names(evaluator, arguments.get(at, name), span or me.span)
+            names_in(evaluator, arguments.get(at, name), span or me.span)
             for at, name in enumerate(("outcomes", "input_keys", "output_keys", "io_keys"), 1)
         )
-        _interface(evaluator, me, outcomes, _joined(inputs, both), _joined(outputs, both))
+        set_interface(evaluator, me, outcomes, together(inputs, both), together(outputs, both))
     return NONE
-
-
-def _interface(
-    evaluator: Interpreter, me: Instance, outcomes: Value, inputs: Value, outputs: Value
-) -> None:
-    for slot, value in (("$outcomes", outcomes), ("$inputs", inputs), ("$outputs", outputs)):
-        if isinstance(value, ListValue):  # a copy: SMACH makes a set of it
-            items = value.items
-            value = TupleValue(items) if isinstance(items, tuple) else value
-        evaluator.heap.set(me.slots, slot, value)
 
 
 def _container(kind: str, inputs_at: int, others: Sequence[tuple[int, str]]) -> Run:
@@ -132,14 +107,11 @@ def _container(kind: str, inputs_at: int, others: Sequence[tuple[int, str]]) -> 
         if not isinstance(me, Instance):
             return NONE
         here = span or me.span
-        outcomes = _names(evaluator, arguments.get(1, "outcomes"), here)
-        inputs = _names(evaluator, arguments.get(inputs_at, "input_keys"), here)
-        outputs = _names(evaluator, arguments.get(inputs_at + 1, "output_keys"), here)
-        _interface(evaluator, me, outcomes, inputs, outputs)
-        evaluator.heap.set(me.slots, "$kind", Const(kind))
-        evaluator.heap.set(me.slots, "$children", Children())
-        evaluator.heap.set(me.slots, "userdata", DictValue({"items": {}, "$userdata": True}))
-        evaluator.heap.set(me.slots, "$userdata", Const(True))
+        outcomes = names_in(evaluator, arguments.get(1, "outcomes"), here)
+        inputs = names_in(evaluator, arguments.get(inputs_at, "input_keys"), here)
+        outputs = names_in(evaluator, arguments.get(inputs_at + 1, "output_keys"), here)
+        set_interface(evaluator, me, outcomes, inputs, outputs)
+        make_container(evaluator, me, kind)
         for at, name in others:
             value = arguments.get(at, name)
             if value is not None:
@@ -157,14 +129,14 @@ def _cb_state(evaluator: Interpreter, arguments: Arguments, span: Span | None) -
         given = [arguments.get(at, name) for at, name in
                  ((4, "outcomes"), (5, "input_keys"), (6, "output_keys"))]  # fmt: skip
         both = arguments.get(7, "io_keys") or TupleValue(())
-        outcomes = _joined(_names(evaluator, given[0], here), own[0])
-        inputs = _joined(_names(evaluator, given[1], here), own[1], both)
-        outputs = _joined(_names(evaluator, given[2], here), own[2], both)
-        _interface(evaluator, me, outcomes, inputs, outputs)
+        outcomes = together(names_in(evaluator, given[0], here), own[0])
+        inputs = together(names_in(evaluator, given[1], here), own[1], both)
+        outputs = together(names_in(evaluator, given[2], here), own[2], both)
+        set_interface(evaluator, me, outcomes, inputs, outputs)
         evaluator.heap.set(me.slots, "$callback", function)
         values = arguments.get(3, "cb_kwargs")
         if values is not None:
-            evaluator.heap.set(me.slots, "$callback_values", _copied(values) or NONE)
+            evaluator.heap.set(me.slots, "$callback_values", copied(values) or NONE)
     return NONE
 
 
@@ -197,15 +169,21 @@ def _ready(name: str) -> Run:
         callbacks = [values[key] for key in values if key.endswith("_cb") and key != "cond_cb"]
         interfaces = [_of_callback(value) for value in callbacks]
         outcomes: list[Value] = [TupleValue(tuple(Const(text) for text in _READY[name]))]
-        outcomes += [_names(evaluator, values.get("outcomes"), here), *(i[0] for i in interfaces)]
+        outcomes += [
+            names_in(evaluator, values.get("outcomes"), here),
+            *(i[0] for i in interfaces),
+        ]
         reads = [_one(values[key]) for key in _READ if key in values]
         writes = [_one(values[key]) for key in _WRITTEN if key in values]
-        inputs = [_names(evaluator, values.get("input_keys"), here), *(i[1] for i in interfaces)]
-        outputs = [_names(evaluator, values.get("output_keys"), here), *(i[2] for i in interfaces)]
-        slots = _names(evaluator, values.get("slots"), here)
-        _interface(evaluator, me, _joined(*outcomes), _joined(*inputs, *reads, slots),
-                   _joined(*outputs, *writes, slots))  # fmt: skip
-        evaluator.heap.set(me.slots, "$required", _joined(*reads))
+        inputs = [names_in(evaluator, values.get("input_keys"), here), *(i[1] for i in interfaces)]
+        outputs = [
+            names_in(evaluator, values.get("output_keys"), here),
+            *(i[2] for i in interfaces),
+        ]
+        slots = names_in(evaluator, values.get("slots"), here)
+        set_interface(evaluator, me, together(*outcomes), together(*inputs, *reads, slots),
+                   together(*outputs, *writes, slots))  # fmt: skip
+        evaluator.heap.set(me.slots, "$required", together(*reads))
         return NONE
 
     return run
@@ -253,43 +231,24 @@ def _add(kind: str) -> Run:
         if not evaluator.opened:
             evaluator.orphans += 1
             return state or UNKNOWN
-        container = evaluator.opened[-1]
-        if not isinstance(container, Instance):
-            return state or UNKNOWN
-        children = container.slots.get("$children")
-        if not isinstance(children, Children) or span is None:
+        if span is None:
             return state or UNKNOWN
         added = Added(
-            label=label or UNKNOWN, state=state or UNKNOWN, transitions=_copied(transitions),
-            remapping=_copied(remapping), span=span, kind=kind, connector=connector, loop=loop,
-            breaks=breaks, final=_copied(final), possible=False,
+            label=label or UNKNOWN, state=state or UNKNOWN, transitions=copied(transitions),
+            remapping=copied(remapping), span=span, kind=kind, connector=connector, loop=loop,
+            breaks=breaks, final=copied(final), possible=False,
         )  # fmt: skip
-        whole = (*children.added, added)
-        if len(whole) > 5_000:
-            whole = children.added
-            children = Children(whole, False)
-        evaluator.heap.set(container.slots, "$children", Children(whole, children.complete))
-        for given in (transitions, remapping):
-            if isinstance(given, DictValue):
-                for key, is_same in given.repeated:
-                    if is_same and given is remapping:
-                        continue
-                    place = key.span or span
-                    fault = UseFault("repeated key", place, (str(key.value),))
-                    if fault not in evaluator.faults:
-                        evaluator.faults.append(fault)
-        if isinstance(transitions, DictValue) and kind == "add" and isinstance(state, Instance):
+        is_added = add_child(evaluator, evaluator.opened[-1], added)
+        if (
+            is_added
+            and kind == "add"
+            and isinstance(transitions, DictValue)
+            and isinstance(state, Instance)
+        ):
             _write_missing(evaluator, transitions, state, span)
         return state or UNKNOWN
 
     return run
-
-
-def _copied(value: Value | None) -> Value | None:
-    """A dictionary as it is now: code can change it later."""
-    if not isinstance(value, DictValue):
-        return value
-    return DictValue({**value.slots}, value.span, value.repeated)
 
 
 def _write_missing(
@@ -325,40 +284,17 @@ def _set_initial(evaluator: Interpreter, arguments: Arguments, span: Span | None
     return NONE
 
 
-def _execute(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    me = arguments.get(0, "self")
-    if isinstance(me, Instance):
-        evaluator.heap.set(me.slots, "$executed", Const(True))
-        if len(arguments.positional) + len(arguments.named) > 1:
-            evaluator.heap.set(me.slots, "$exposed", Const(True))
-    return UNKNOWN
-
-
 def _register(*slots: str) -> Run:
     def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
         me = arguments.get(0, "self")
         for slot in slots:
             if isinstance(me, Instance):
                 before = me.slots.get(slot, TupleValue(()))
-                whole = _joined(before, arguments.get(1, "keys") or UNKNOWN)
+                whole = together(before, arguments.get(1, "keys") or UNKNOWN)
                 evaluator.heap.set(me.slots, slot, whole)
         return NONE
 
     return run
-
-
-def _registered(slot: str) -> Run:
-    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-        me = arguments.get(0, "self")
-        found = me.slots.get(slot, UNKNOWN) if isinstance(me, Instance) else UNKNOWN
-        items = sequence(found)
-        return UNKNOWN if items is None else evaluator.new_list(items)
-
-    return run
-
-
-def _nothing(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    return NONE
 
 
 CALLBACKS = ("register_start_cb", "register_transition_cb", "register_termination_cb")
@@ -379,17 +315,17 @@ def _called_later(name: str) -> Run:
 
 _STATE: Mapping[str, Run] = {
     "__init__": _state,
-    "execute": _execute,
+    "execute": executed,
     "register_outcomes": _register("$outcomes"),
     "register_input_keys": _register("$inputs"),
     "register_output_keys": _register("$outputs"),
     "register_io_keys": _register("$inputs", "$outputs"),
-    "get_registered_outcomes": _registered("$outcomes"),
-    "get_registered_input_keys": _registered("$inputs"),
-    "get_registered_output_keys": _registered("$outputs"),
+    "get_registered_outcomes": listed("$outcomes"),
+    "get_registered_input_keys": listed("$inputs"),
+    "get_registered_output_keys": listed("$outputs"),
     **dict.fromkeys(
         ("request_preempt", "service_preempt", "recall_preempt", "preempt_requested",
-         "set_initial_userdata", "check_consistency", "close"), _nothing,
+         "set_initial_userdata", "check_consistency", "close"), nothing,
     ),
 }  # fmt: skip
 
@@ -407,14 +343,6 @@ def _close(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> V
     return NONE
 
 
-def _from_keys(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    names, value = sequence(arguments.get(0, "iterable")), arguments.get(1, "value", NONE)
-    if names is None or not all(isinstance(name, Const) for name in names):
-        return DictValue({"items": UNKNOWN}, span)
-    pairs = {name.value: (name, value) for name in names if isinstance(name, Const)}
-    return DictValue({"items": pairs}, span)
-
-
 _CONTAINER: Mapping[str, Run] = {
     **_STATE,
     **{name: _called_later(name) for name in CALLBACKS},
@@ -425,8 +353,7 @@ _CONTAINER: Mapping[str, Run] = {
 
 _METHODS: Mapping[str, Mapping[str, Run]] = {
     "smach.State": _STATE,
-    "smach.CBInterface": {"__get__": _nothing},
-    "builtins.dict": {"fromkeys": _from_keys},
+    "smach.CBInterface": {"__get__": nothing},
     "smach.CBState": {**_STATE, "__init__": _cb_state},
     "smach.StateMachine": {
         **_CONTAINER,
@@ -460,24 +387,6 @@ _METHODS: Mapping[str, Mapping[str, Run]] = {
 }  # fmt: skip
 
 
-def parameters_of(cls: Value) -> list[str]:
-    """The names of the parameters of a class of SMACH; empty for other ones."""
-    name = cls.name if isinstance(cls, LibraryClass) else ""
-    return [*_PARAMETERS.get(name, _OTHER_PARAMETERS.get(name, ()))]
-
-
-def method_of(cls: str, name: str) -> Native | None:
-    """A method of a class of SMACH; None if it has none of that name."""
-    run = _METHODS.get(cls, {}).get(name)
-    return Native(f"{cls}.{name}", run, name in STATIC) if run is not None else None
-
-
-def new_object(evaluator: Interpreter, cls: LibraryClass, arguments: Arguments) -> Value:
-    """An object of a class of Python's library."""
-    make = MAKERS.get(cls.name)
-    return make(evaluator, arguments, None) if make is not None else UNKNOWN
-
-
 def _user_data(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
     return DictValue({"items": {}, "$userdata": True})
 
@@ -499,116 +408,6 @@ def _cb_interface(evaluator: Interpreter, arguments: Arguments, span: Span | Non
     return Native("cb_interface", decorate)
 
 
-def _partial(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    if not arguments.positional:
-        return UNKNOWN
-    function, more = arguments.positional[0], arguments.without_first()
-    return evaluator.partial(function, more)
-
-
-def _copy(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    match arguments.get(0, "x", UNKNOWN):
-        case ListValue() as value:
-            return ListValue({"items": value.items}, value.span, value.kind)
-        case DictValue() as value:
-            return DictValue({"items": value.items}, value.span, value.repeated)
-        case Const() | TupleValue() as plain:
-            return plain
-    return UNKNOWN
-
-
-def _same(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    return arguments.get(0, "x", UNKNOWN) or UNKNOWN
-
-
-def _wraps(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    return Native("wraps", _same)
-
-
-def _named_tuple(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    """`collections.namedtuple`: a function that makes objects with these attributes."""
-    fields = arguments.get(1, "field_names", UNKNOWN)
-    names: list[str] | None = None
-    if isinstance(fields, Const) and isinstance(fields.value, str):
-        names = fields.value.replace(",", " ").split()
-    elif (items := sequence(fields)) is not None:
-        names = [str(item.value) for item in items if isinstance(item, Const)]
-
-    def make(evaluator: Interpreter, given: Arguments, span: Span | None) -> Value:
-        if names is None or given.open:
-            return UNKNOWN
-        slots: dict[Any, Any] = {
-            name: given.get(at, name, UNKNOWN) for at, name in enumerate(names)
-        }
-        return Instance(LibraryClass("builtins.object"), slots, span)
-
-    return Native("namedtuple", make)
-
-
-def _module(name: str, **names: Value) -> ModuleValue:
-    return ModuleValue(name, {**names})
-
-
-def _classes(prefix: str, names: str) -> dict[str, Value]:
-    return {name: LibraryClass(f"{prefix}.{name}") for name in names.split()}
-
-
-def _libraries() -> dict[str, ModuleValue]:
-    smach = {
-        **_classes("smach", "State CBState StateMachine Sequence Concurrence Iterator"),
-        "ConditionState": LibraryClass("smach.ConditionState"),
-        "CBInterface": LibraryClass("smach.CBInterface"),
-        **_classes("smach_ros", "SimpleActionState ServiceState MonitorState"),  # before 1.2
-        "cb_interface": Native("cb_interface", _cb_interface),
-        "UserData": Native("UserData", _user_data),
-        "Container": UNKNOWN,
-        **dict.fromkeys(
-            ("loginfo", "logwarn", "logerr", "logdebug", "set_loggers", "set_shutdown_check"),
-            Native("nothing", _nothing),
-        ),
-    }
-    smach_ros = {
-        **_classes("smach_ros", "SimpleActionState ServiceState MonitorState ConditionState"),
-        "IntrospectionServer": Native("nothing", lambda e, a, s: Unknown(reason="rospy")),
-        "set_preempt_handler": Native("nothing", _nothing),
-        "ActionServerWrapper": Native("nothing", lambda e, a, s: Unknown(reason="rospy")),
-    }
-    partial = Native("partial", _partial)
-    return {
-        "smach": _module("smach", **smach),
-        "smach_ros": _module("smach_ros", **smach_ros),
-        "functools": _module("functools", partial=partial, wraps=Native("wraps", _wraps)),
-        "copy": _module("copy", copy=Native("copy", _copy), deepcopy=Native("copy", _copy)),
-        "enum": _module(
-            "enum", **_classes("enum", "Enum IntEnum StrEnum Flag IntFlag"),
-            unique=Native("unique", _same), auto=Native("auto", lambda e, a, s: UNKNOWN),
-        ),
-        "collections": _module(
-            "collections", **_classes("collections", "OrderedDict defaultdict deque"),
-            namedtuple=Native("namedtuple", _named_tuple),
-        ),
-        "sys": _module("sys", version_info=TupleValue(tuple(Const(n) for n in (3, 12, 0)))),
-        "dataclasses": _module("dataclasses"),
-        "typing": _module("typing"),
-        "__future__": _module("__future__"),
-    }  # fmt: skip
-
-
-def library_module(known: dict[str, ModuleValue], name: str) -> Value | None:
-    """A module that the evaluator models; None for any other. `known` are those of one run."""
-    if not known:
-        known.update(_libraries())
-    if name in known:
-        found = known[name]
-        if name in ("dataclasses", "typing", "__future__"):
-            return Unknown(reason=name)
-        return found
-    head = name.partition(".")[0]
-    if head in ("smach", "smach_ros") and name.count(".") == 1:
-        return known[head]
-    return None
-
-
 def functions_of(value: Value) -> Iterator[Function]:
     """The functions of the project behind a value."""
     for part in alternatives(value):
@@ -621,6 +420,35 @@ def functions_of(value: Value) -> Iterator[Function]:
                 yield from functions_of(inner_)
 
 
-def is_container(value: Value) -> bool:
-    """Whether a value is a container of SMACH."""
-    return isinstance(value, Instance) and "$children" in value.slots
+_MODULE: Mapping[str, Value] = {
+    **classes("smach", "State CBState StateMachine Sequence Concurrence Iterator"),
+    **classes("smach", "ConditionState CBInterface"),
+    **classes("smach_ros", "SimpleActionState ServiceState MonitorState"),  # before 1.2
+    "cb_interface": Native("cb_interface", _cb_interface),
+    "UserData": Native("UserData", _user_data),
+    "Container": UNKNOWN,
+    **dict.fromkeys(
+        ("loginfo", "logwarn", "logerr", "logdebug", "set_loggers", "set_shutdown_check"),
+        Native("nothing", nothing),
+    ),
+}
+
+_ROS_MODULE: Mapping[str, Value] = {
+    **classes("smach_ros", "SimpleActionState ServiceState MonitorState ConditionState"),
+    "IntrospectionServer": Native("nothing", lambda e, a, s: Unknown(reason="rospy")),
+    "set_preempt_handler": Native("nothing", nothing),
+    "ActionServerWrapper": Native("nothing", lambda e, a, s: Unknown(reason="rospy")),
+}
+
+SMACH = Framework(
+    name="SMACH",
+    packages=("smach", "smach_ros"),
+    modules={"smach": _MODULE, "smach_ros": _ROS_MODULE},
+    methods=_METHODS,
+    containers=frozenset([
+        "smach.StateMachine", "smach.Sequence", "smach.Concurrence", "smach.Iterator",
+    ]),
+    static=frozenset(["add", "add_auto", "set_contained_state"]),  # of the container opened last
+    overridden=frozenset(["add", "execute"]),
+    parameters={**_PARAMETERS, **_OTHER_PARAMETERS},
+)  # fmt: skip

@@ -187,7 +187,7 @@ class Class:
 
 @dataclass(frozen=True, slots=True)
 class LibraryClass:
-    """A class of SMACH, of smach_ros, or of Python that the evaluator models, by its full name."""
+    """A class of a framework, or of Python, that the evaluator models, by its full name."""
 
     name: str
 
@@ -330,11 +330,14 @@ class Heap(Protocol):
     def set(self, slots: Slots, key: Any, value: Any) -> None: ...
 
 
-UseKind = Literal["text as list", "shared transitions", "missing member", "repeated key"]
+UseKind = Literal[
+    "text as list", "shared transitions", "missing member", "repeated key",
+    "state named as outcome", "no such start state",
+]  # fmt: skip
 
 
 class UseFault(NamedTuple):
-    """A wrong use of SMACH at its place, with the names in it, and another place."""
+    """A wrong use of a framework at its place, with the names in it, and another place."""
 
     kind: UseKind
     span: Span

@@ -1,0 +1,166 @@
+"""What the evaluator knows of a framework for state machines, as data, and what the models of their
+classes have in common.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from smachac.diagnostics.source import Span
+from smachac.pysource.machines.heap import Added, Children
+from smachac.pysource.machines.values import (
+    NONE,
+    UNKNOWN,
+    Arguments,
+    Const,
+    DictValue,
+    Instance,
+    Interpreter,
+    LibraryClass,
+    ListValue,
+    TupleValue,
+    UseFault,
+    Value,
+    sequence,
+)
+from smachac.records import dataclass, field
+
+Run = Callable[[Interpreter, Arguments, "Span | None"], Value]
+"""A model of a function: what a call returns and changes."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Framework:
+    """A framework for state machines.
+
+    `packages` are its top packages, `modules` the names in its modules that the evaluator models, a
+    module that is not listed being the top package that it is in. `methods` are the methods of its
+    classes by full name (`smach.StateMachine`), `static` those that need no object, `parameters`
+    the parameters of the constructors in their order, where an import needs them. `containers` are
+    the classes of containers; `adds` are the methods that add states, and a class that overrides
+    one of `overridden` changes how they are added or run.
+
+    `jumps`: an outcome without a transition leads to the state of this name, if there is one.
+    `effects` are the codes of the rules whose errors are faults in this framework too, each with
+    the effect in its terms, or an empty text for that of the rule; None: all rules are about it.
+    """
+
+    name: str
+    packages: tuple[str, ...]
+    modules: Mapping[str, Mapping[str, Value]]
+    methods: Mapping[str, Mapping[str, Run]]
+    containers: frozenset[str]
+    adds: frozenset[str] = frozenset()
+    static: frozenset[str] = frozenset()
+    overridden: frozenset[str]
+    parameters: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    jumps: bool = False
+    effects: Mapping[str, str] | None = None
+
+
+def classes(prefix: str, names: str) -> dict[str, Value]:
+    """Classes of a library by their short names, which `names` lists."""
+    return {name: LibraryClass(f"{prefix}.{name}") for name in names.split()}
+
+
+def nothing(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    """A function without an effect on machines."""
+    return NONE
+
+
+def names_in(evaluator: Interpreter, value: Value | None, span: Span | None) -> Value:
+    """A list of names. Of a text, each letter is a name: a fault."""
+    if value is None:
+        return TupleValue(())
+    if isinstance(value, Const) and isinstance(value.value, str) and value.value and span:
+        place = value.span or span
+        evaluator.faults.append(UseFault("text as list", place, (value.value,)))
+    return value
+
+
+def together(*values: Value) -> Value:
+    """The items of several lists as one list."""
+    parts = [sequence(value) for value in values]
+    if any(part is None for part in parts):
+        return UNKNOWN
+    return TupleValue(tuple(item for part in parts for item in part or ()))
+
+
+def set_interface(
+    evaluator: Interpreter, me: Instance, outcomes: Value, inputs: Value, outputs: Value
+) -> None:
+    """Sets the outcomes and keys of a state."""
+    for slot, value in (("$outcomes", outcomes), ("$inputs", inputs), ("$outputs", outputs)):
+        if isinstance(value, ListValue):  # a copy: the framework makes a set of it
+            items = value.items
+            value = TupleValue(items) if isinstance(items, tuple) else value
+        evaluator.heap.set(me.slots, slot, value)
+
+
+def make_container(evaluator: Interpreter, me: Instance, kind: str) -> None:
+    """Makes an object a container without states; `kind` is the class of IR nodes."""
+    slots: dict[str, object] = {
+        "$kind": Const(kind),
+        "$children": Children(),
+        "$initial": NONE,
+        "userdata": DictValue({"items": {}, "$userdata": True}),
+        "$userdata": Const(True),
+    }
+    for slot, value in slots.items():
+        evaluator.heap.set(me.slots, slot, value)
+
+
+def add_child(evaluator: Interpreter, container: Value, added: Added) -> bool:
+    """Adds a state to a container; whether it is one. A key that a dictionary has twice is a
+    fault."""
+    if not isinstance(container, Instance):
+        return False
+    children = container.slots.get("$children")
+    if not isinstance(children, Children):
+        return False
+    whole = (*children.added, added)
+    if len(whole) > MOST_STATES:
+        whole = children.added
+        children = Children(whole, False)
+    evaluator.heap.set(container.slots, "$children", Children(whole, children.complete))
+    for given in (added.transitions, added.remapping):
+        for key, is_same in given.repeated if isinstance(given, DictValue) else ():
+            if is_same and given is added.remapping:
+                continue
+            fault = UseFault("repeated key", key.span or added.span, (str(key.value),))
+            if fault not in evaluator.faults:
+                evaluator.faults.append(fault)
+    return True
+
+
+def copied(value: Value | None) -> Value | None:
+    """A dictionary as it is now: code can change it later."""
+    if not isinstance(value, DictValue):
+        return value
+    return DictValue({**value.slots}, value.span, value.repeated)
+
+
+MOST_STATES = 5_000
+"""The most states of a container."""
+
+
+def executed(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    """The method that runs a machine: other code can set its keys if it gets any."""
+    me = arguments.get(0, "self")
+    if isinstance(me, Instance):
+        evaluator.heap.set(me.slots, "$executed", Const(True))
+        if len(arguments.positional) + len(arguments.named) > 1:
+            evaluator.heap.set(me.slots, "$exposed", Const(True))
+    return UNKNOWN
+
+
+def listed(slot: str) -> Run:
+    """A method that returns the names in a slot as a list."""
+
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        me = arguments.get(0, "self")
+        found = me.slots.get(slot, UNKNOWN) if isinstance(me, Instance) else UNKNOWN
+        items = sequence(found)
+        return UNKNOWN if items is None else evaluator.new_list(items)
+
+    return run

@@ -1,0 +1,100 @@
+"""The frameworks and the modules of Python's library that the evaluator models, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from smachac.diagnostics.source import Source
+from smachac.pysource.machines import python_library
+from smachac.pysource.machines.builtins import MAKERS
+from smachac.pysource.machines.framework import Framework
+from smachac.pysource.machines.smach_library import SMACH
+from smachac.pysource.machines.values import (
+    UNKNOWN,
+    Arguments,
+    Const,
+    Instance,
+    Interpreter,
+    LibraryClass,
+    ModuleValue,
+    Native,
+    Unknown,
+    Value,
+)
+from smachac.pysource.machines.yasmin_library import YASMIN
+
+FRAMEWORKS: tuple[Framework, ...] = (SMACH, YASMIN)
+"""The frameworks whose machines are read."""
+
+_OF_PACKAGE = {package: framework for framework in FRAMEWORKS for package in framework.packages}
+
+
+def of_framework(cls: Value) -> Framework | None:
+    """The framework of a class; None for other classes."""
+    if not isinstance(cls, LibraryClass):
+        return None
+    return _OF_PACKAGE.get(cls.name.partition(".")[0])
+
+
+def framework_of(order: Iterable[Value]) -> Framework:
+    """The framework of a state; `order` are its class and the base classes."""
+    return next((found for cls in order if (found := of_framework(cls)) is not None), SMACH)
+
+
+def is_container_class(cls: Value) -> bool:
+    """Whether a class is a container of a framework."""
+    framework = of_framework(cls)
+    return framework is not None and cls.name in framework.containers  # type: ignore[union-attr]
+
+
+def is_container(value: Value) -> bool:
+    """Whether a value is a container."""
+    return isinstance(value, Instance) and "$children" in value.slots
+
+
+def parameters_of(cls: Value) -> list[str]:
+    """The names of the parameters of a class of a framework; empty for other ones."""
+    framework = of_framework(cls)
+    return [*framework.parameters.get(cls.name, ())] if framework is not None else []  # type: ignore[union-attr]
+
+
+def method_of(cls: str, name: str) -> Native | None:
+    """A method of a class of a library, by their names; None if it has none of that name."""
+    framework = _OF_PACKAGE.get(cls.partition(".")[0])
+    methods = framework.methods if framework is not None else python_library.METHODS
+    run = methods.get(cls, {}).get(name)
+    is_static = framework is not None and name in framework.static
+    return Native(f"{cls}.{name}", run, is_static) if run is not None else None
+
+
+def new_object(evaluator: Interpreter, cls: LibraryClass, arguments: Arguments) -> Value:
+    """An object of a class of Python's library."""
+    make = MAKERS.get(cls.name)
+    return make(evaluator, arguments, None) if make is not None else UNKNOWN
+
+
+def library_module(known: dict[str, ModuleValue], name: str) -> Value | None:
+    """A module that the evaluator models; None for any other. `known` are those of one run."""
+    if not known:
+        every = {name: names for framework in FRAMEWORKS
+                 for name, names in framework.modules.items()}  # fmt: skip
+        for module, names in (*every.items(), *python_library.MODULES.items()):
+            known[module] = ModuleValue(module, {**names})
+    if name in known:
+        return known[name]
+    if name in python_library.UNREAD:
+        return Unknown(reason=name)
+    head = name.partition(".")[0]
+    return known.get(head) if head in _OF_PACKAGE and name.count(".") == 1 else None
+
+
+def library_source(file: str) -> Source | None:
+    """The text of a module of a framework that has constants alone, by the path of its file."""
+    name = file.removesuffix(".py").replace("/", ".")
+    for framework in FRAMEWORKS:
+        names = framework.modules.get(name, {})
+        lines = [f"{key} = {value.value!r}" for key, value in names.items()
+                 if isinstance(value, Const)]  # fmt: skip
+        if lines and len(lines) == len(names):
+            return Source(file, "\n".join(lines) + "\n")
+    return None

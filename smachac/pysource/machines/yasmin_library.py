@@ -1,0 +1,289 @@
+"""The classes and functions of YASMIN that the evaluator models.
+
+The signatures are those of YASMIN 3.0.0 to 6.1.1. The outcomes `canceled` and `timeout` of the
+states of yasmin_ros depend on the version and on arguments: they are optional.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from smachac.diagnostics.source import Span
+from smachac.pysource.machines.framework import (
+    Framework,
+    Run,
+    add_child,
+    classes,
+    copied,
+    executed,
+    listed,
+    make_container,
+    names_in,
+    nothing,
+    set_interface,
+    together,
+)
+from smachac.pysource.machines.heap import Added, Children
+from smachac.pysource.machines.values import (
+    NONE,
+    UNKNOWN,
+    Arguments,
+    Const,
+    DictValue,
+    Instance,
+    Interpreter,
+    Native,
+    TupleValue,
+    UseFault,
+    UseKind,
+    Value,
+    sequence,
+)
+
+OUTCOMES = {
+    "SUCCEED": "succeeded", "ABORT": "aborted", "FAIL": "failed", "CANCEL": "canceled",
+    "TIMEOUT": "timeout", "RETRY": "retry",
+}  # fmt: skip
+"""The constants of `yasmin_ros.basic_outcomes`; FAIL and RETRY were in 3.1 to 6.0."""
+
+_OPTIONAL = ("canceled", "timeout")
+
+_READY: Mapping[str, tuple[int, tuple[str, ...], tuple[str, ...]]] = {
+    "ActionState": (4, ("succeeded", "aborted"), _OPTIONAL),
+    "ServiceState": (4, ("succeeded", "aborted"), _OPTIONAL),
+    "MonitorState": (3, (), _OPTIONAL),
+    "PublisherState": (0, ("succeeded",), _OPTIONAL[:1]),
+    "GetParametersState": (0, ("succeeded", "aborted"), _OPTIONAL[:1]),
+    "TfBufferState": (0, ("succeeded", "aborted"), ()),
+    "RosSerializePyState": (0, ("succeed", "type_error", "error"), ()),
+    "RosDeserializePyState": (0, ("succeed", "type_error", "error"), ()),
+}
+"""The states of yasmin_ros: the place of the argument `outcomes` (0: they have none), the outcomes
+that each has besides, and those that it can have."""
+
+
+def _names(texts: tuple[str, ...]) -> Value:
+    return TupleValue(tuple(map(Const, texts)))
+
+
+_NOTHING = TupleValue(())
+
+
+def _state(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    me = arguments.get(0, "self")
+    if isinstance(me, Instance):
+        outcomes = names_in(evaluator, arguments.get(1, "outcomes"), span or me.span)
+        set_interface(evaluator, me, outcomes, _NOTHING, _NOTHING)
+    return NONE
+
+
+def _callback_state(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    me = arguments.get(0, "self")
+    _state(evaluator, arguments, span)
+    if isinstance(me, Instance):
+        callback = arguments.get(2, "callback") or arguments.get(2, "cb", UNKNOWN)
+        evaluator.heap.set(me.slots, "$callback", callback)
+    return NONE
+
+
+def _join_state(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    me = arguments.get(0, "self")
+    if isinstance(me, Instance):
+        outcome = arguments.get(2, "outcome", Const("joined")) or UNKNOWN
+        set_interface(evaluator, me, TupleValue((outcome,)), _NOTHING, _NOTHING)
+    return NONE
+
+
+def _ready(at: int, outcomes: tuple[str, ...], optional: tuple[str, ...]) -> Run:
+    """The constructor of a state that is ready to use."""
+
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        me = arguments.get(0, "self")
+        if isinstance(me, Instance):
+            given = arguments.get(at, "outcomes") if at else None
+            own = names_in(evaluator, given, span or me.span)
+            own = _NOTHING if own == NONE else own
+            set_interface(evaluator, me, together(own, _names(outcomes)), _NOTHING, _NOTHING)
+            evaluator.heap.set(me.slots, "$optional", _names(optional))
+        return NONE
+
+    return run
+
+
+def _machine(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    """The constructor of a state machine, which can begin with a name."""
+    me, first = arguments.get(0, "self"), arguments.get(1, "outcomes")
+    if isinstance(me, Instance):
+        is_name = isinstance(first, Const) and len(arguments.positional) > 2
+        named = dict(arguments.named)
+        if is_name or ("outcomes" in named and len(arguments.positional) > 1):
+            first = named.get("outcomes", arguments.get(2, "outcomes"))
+        outcomes = names_in(evaluator, first, span or me.span)
+        set_interface(evaluator, me, outcomes, _NOTHING, _NOTHING)
+        make_container(evaluator, me, "StateMachine")
+    return NONE
+
+
+def _concurrence(at: int) -> Run:
+    """The constructor of a container whose states run at the same time; `at` is the place of the
+    default outcome, before which the states can be."""
+
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        me = arguments.get(0, "self")
+        if not isinstance(me, Instance):
+            return NONE
+        default = arguments.get(at, "default_outcome", UNKNOWN) or UNKNOWN
+        rules = arguments.get(at + 1, "outcome_map", DictValue({"items": {}})) or UNKNOWN
+        outcomes = together(copied(rules) or UNKNOWN, TupleValue((default,)))
+        set_interface(evaluator, me, outcomes, _NOTHING, _NOTHING)
+        make_container(evaluator, me, "Concurrence")
+        evaluator.heap.set(me.slots, "$default_outcome", default)
+        evaluator.heap.set(me.slots, "$outcome_map", rules)
+        if at > 1:
+            _add_states(evaluator, me, arguments.get(1, "states", UNKNOWN), span or me.span)
+        return NONE
+
+    return run
+
+
+def _add_states(
+    evaluator: Interpreter, me: Instance, states: Value | None, span: Span | None
+) -> None:
+    """Adds the states of a dictionary to a concurrence."""
+    items = states.items if isinstance(states, DictValue) else UNKNOWN
+    if not isinstance(items, Mapping) or span is None:
+        evaluator.heap.set(me.slots, "$children", Children((), complete=False))
+        return
+    for name, state in items.values():
+        evaluator.adds += 1
+        place = name.span if isinstance(name, Const) and name.span is not None else span
+        place = place if place.source is span.source else span
+        added = Added(label=name, state=state, transitions=None, remapping=None, span=place,
+                      kind="concurrence")  # fmt: skip
+        add_child(evaluator, me, added)
+
+
+def _add(kind: str) -> Run:
+    """A method that adds a state: its name, the state, and for a state machine the transitions."""
+
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        me, name = arguments.get(0, "self"), arguments.get(1, "name", UNKNOWN) or UNKNOWN
+        state = arguments.get(2, "sm" if kind == "concurrence" else "state", UNKNOWN) or UNKNOWN
+        transitions = arguments.get(3, "transitions") if kind == "add" else None
+        remapping = arguments.get(4, "remappings") if kind == "add" else None
+        evaluator.adds += 1
+        if span is None or not isinstance(me, Instance):
+            return NONE
+        added = Added(label=name, state=state, transitions=copied(transitions),
+                      remapping=copied(remapping), span=span, kind=kind)  # fmt: skip
+        add_child(evaluator, me, added)
+        outcomes = sequence(me.slots.get("$outcomes")) or ()
+        if kind == "add" and isinstance(name, Const) and name in outcomes:
+            _refuse(evaluator, "state named as outcome", name, span)
+        return NONE
+
+    return run
+
+
+def _set_start(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    """`set_start_state`, which refuses a state that is not added yet."""
+    me, name = arguments.get(0, "self"), arguments.get(1, "state_name", UNKNOWN) or UNKNOWN
+    if not isinstance(me, Instance):
+        return NONE
+    evaluator.heap.set(me.slots, "$initial", TupleValue((name,)))
+    children = me.slots.get("$children")
+    if span is not None and isinstance(name, Const) and isinstance(children, Children):
+        known = [child.label for child in children.added]
+        is_whole = children.complete and all(isinstance(label, Const) for label in known)
+        if is_whole and name not in known:
+            _refuse(evaluator, "no such start state", name, span)
+    return NONE
+
+
+def _refuse(evaluator: Interpreter, kind: UseKind, name: Const, span: Span) -> None:
+    """Notes that YASMIN refuses a call, at the name in it."""
+    own = name.span
+    is_inside = own is not None and own.source is span.source and span.start <= own.start < span.end
+    fault = UseFault(kind, own if own is not None and is_inside else span, (str(name.value),))
+    evaluator.faults.append(fault)
+
+
+_STATE: Mapping[str, Run] = {
+    "__init__": _state,
+    "__call__": executed,
+    "execute": executed,
+    "get_outcomes": listed("$outcomes"),
+    **dict.fromkeys(
+        ("configure", "cancel_state", "set_description", "set_outcome_description",
+         "add_input_key", "add_output_key", "declare_parameter", "set_parameter"), nothing,
+    ),
+}  # fmt: skip
+
+_CONTAINER: Mapping[str, Run] = {
+    **_STATE,
+    **dict.fromkeys(
+        ("validate", "set_name", "add_start_cb", "add_transition_cb", "add_end_cb",
+         "set_parameter_mappings", "set_sigint_handler", "cancel_state_machine"), nothing,
+    ),
+}  # fmt: skip
+
+_LOGS = (
+    "YASMIN_LOG_ERROR YASMIN_LOG_WARN YASMIN_LOG_INFO YASMIN_LOG_DEBUG set_loggers set_log_level"
+    " set_default_loggers set_py_loggers"
+)
+
+
+def _unknown(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    return UNKNOWN
+
+
+YASMIN = Framework(
+    name="YASMIN",
+    packages=("yasmin", "yasmin_ros", "yasmin_viewer"),
+    modules={
+        "yasmin": {
+            **classes("yasmin", "State CbState StateMachine Concurrence OrthogonalState JoinState"),
+            "Blackboard": Native("Blackboard", _unknown),
+            **dict.fromkeys(_LOGS.split(), Native("nothing", nothing)),
+        },
+        "yasmin_ros": {
+            **classes("yasmin_ros", " ".join(_READY)),
+            "set_ros_loggers": Native("nothing", nothing),
+        },
+        "yasmin_ros.basic_outcomes": {name: Const(text) for name, text in OUTCOMES.items()},
+        "yasmin_viewer": {"YasminViewerPub": Native("YasminViewerPub", _unknown)},
+    },
+    methods={
+        "yasmin.State": _STATE,
+        "yasmin.CbState": {**_STATE, "__init__": _callback_state},
+        "yasmin.JoinState": {**_STATE, "__init__": _join_state},
+        "yasmin.StateMachine": {
+            **_CONTAINER,
+            "__init__": _machine,
+            "add_state": _add("add"),
+            "set_start_state": _set_start,
+        },
+        "yasmin.Concurrence": {**_CONTAINER, "__init__": _concurrence(2)},
+        "yasmin.OrthogonalState": {
+            **_CONTAINER,
+            "__init__": _concurrence(1),
+            "add_region": _add("concurrence"),
+        },
+        **{f"yasmin_ros.{name}": {**_STATE, "__init__": _ready(*what)}
+           for name, what in _READY.items()},
+    },
+    containers=frozenset(["yasmin.StateMachine", "yasmin.Concurrence", "yasmin.OrthogonalState"]),
+    adds=frozenset(["add_state", "add_region"]),
+    overridden=frozenset(["add_state", "add_region", "execute"]),
+    jumps=True,
+    effects={
+        "SM101": "YASMIN raises an exception when the machine starts: none of its states runs",
+        "SM102": "`add_state` raises an exception for such a transition: the program stops",
+        "SM104": "after this outcome YASMIN raises an exception: the machine stops",
+        "SM106": "`add_state` raises an exception for the second one: the program stops",
+        "SM201": "the state never runs; YASMIN 6.1 raises an exception when the machine starts",
+        "SM202": "",
+        "SM309": "YASMIN raises an exception after `execute`: the machine stops",
+        "SM403": "YASMIN raises an exception when it makes the concurrence: the program stops",
+    },
+)  # fmt: skip
