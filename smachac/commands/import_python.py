@@ -43,6 +43,13 @@ exit codes: 0 all machines were imported and proven, 1 a machine was not, or a f
 """
 
 
+KNOWN = (
+    "`--assume 'CONDITION=true'` selects a branch; `smachac docs existing` shows how to make the"
+    " rest known"
+)
+"""The help for a machine that is not known as a whole."""
+
+
 def import_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
     parser.add_argument("file", type=as_path, help="a Python file that builds machines")
@@ -104,12 +111,14 @@ def import_command(arguments: Namespace) -> int:
               " `smach.StateMachine`", file=sys.stderr)  # fmt: skip
         return FINDINGS
     for machine in made.incomplete:
-        print(f"error: `{machine.name}` was not imported: parts of it are not known",
-              file=sys.stderr)  # fmt: skip
+        why, help = "parts of it are not known", KNOWN
+        if machine.framework:
+            why = f"machines for {machine.framework} are not imported"
+            help = "`smachac check` and `smachac view` read it; a script has to be written by hand"
+        print(f"error: `{machine.name}` was not imported: {why}", file=sys.stderr)
         for span, reason in machine.unknown:
             print(f"  --> {_place(span)}: {reason}", file=sys.stderr)
-        print("help: `--assume 'CONDITION=true'` selects a branch; `smachac docs existing` shows"
-              " how to make the rest known", file=sys.stderr)  # fmt: skip
+        print(f"help: {help}", file=sys.stderr)
     return _put(made, arguments) if made.texts else FINDINGS
 
 

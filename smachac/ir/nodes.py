@@ -184,7 +184,7 @@ Sugar = Literal["", "timeout", "retry", "for_each"]
 Origin = Literal["written", "implicit", "connector"]
 """The origin of a transition: written in the script; implied by an outcome of the container with
 the same name; or the link between two states of a Sequence (docs/semantics.md, Steps and
-transitions)."""
+transitions), or of a machine in Python whose framework goes on to a state of that name."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

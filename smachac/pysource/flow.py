@@ -23,7 +23,14 @@ from smachac.pysource.functions import (
     is_plain,
     returns_of,
 )
-from smachac.pysource.modules import Module, OwnClass, compared, constant_node, find_function
+from smachac.pysource.modules import (
+    Module,
+    OwnClass,
+    compared,
+    constant_node,
+    find_function,
+    source_module,
+)
 from smachac.pysource.path_ends import PathEnds
 from smachac.pysource.skipped_writes import Paths, SkippedWrites
 from smachac.pysource.source import PythonText, name_span
@@ -579,6 +586,9 @@ class _Reader:
         if other:
             return False
         if not stores:
+            imported = self._imported(name)
+            if imported is not None:
+                return self._add(imported, span, before)
             return self._defined(self.text, constant_node(self.module.names, name), span, before)
         given = [(_targets(node), node.value) for node in self.nodes
                  if isinstance(node, ast.Assign | ast.AnnAssign)]  # fmt: skip
@@ -593,6 +603,14 @@ class _Reader:
         for node in found:
             self._constants(node, before)
         return True
+
+    def _imported(self, name: str) -> str | None:
+        """The text of a constant that the module imports from a library."""
+        match self.module.names.get(name, ()):
+            case (ast.ImportFrom() as node,):
+                own = next(part.name for part in node.names if (part.asname or part.name) == name)
+                return self.flows.library.constant(source_module(self.module, node), own)
+        return None
 
     def _is_passed(self, name: str) -> bool:
         """Whether a name is a parameter of the function that no condition of it examines."""

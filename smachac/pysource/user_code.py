@@ -21,7 +21,8 @@ Words: TypeAlias = "tuple[Word, ...]"
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UserCode:
     """`code(file)` returns a module or header of the user by path (`my_robot/grasp.hpp`);
-    `code_names(folder)` the names of files and folders in a folder of such code; `template(file)`
+    `code_names(folder)` the names of files and folders in a folder of such code;
+    `constant(module, name)` a text that a module of a library has under a name; `template(file)`
     an interface or a template by file name (`MoveTo.yml`, `MoveTo.tpl.py`); `own_template(file)`
     the same, but no built-in one; `template_names()` the names of all, for messages. `ros` is the
     version of ROS of the project. `modules` are the modules of Python that were read, by path and
@@ -31,6 +32,7 @@ class UserCode:
     own_template: Callable[[str], Source | None] = lambda file: None
     code: Callable[[str], Source | None] = lambda file: None
     code_names: Callable[[str], Sequence[str]] = lambda folder: ()
+    constant: Callable[[str, str], str | None] = lambda module, name: None
     template_names: Callable[[], Sequence[str]] = lambda: ()
     ros: Ros = DEFAULT_ROS
     modules: dict[tuple[str, Source], object] = field(

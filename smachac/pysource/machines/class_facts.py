@@ -13,7 +13,7 @@ from smachac.diagnostics.source import Source, Span
 from smachac.ir.class_facts import ClassFacts
 from smachac.pysource.class_reader import NO_EXECUTE, facts_of, facts_of_callback
 from smachac.pysource.machines.dead_code import Choice, choices, live_facts, unknown_places
-from smachac.pysource.machines.libraries import library_source
+from smachac.pysource.machines.libraries import library_constant
 from smachac.pysource.machines.project import Repository
 from smachac.pysource.machines.proven_reads import doubtful_places
 from smachac.pysource.machines.state_comments import StateComments
@@ -28,7 +28,9 @@ class ClassReader:
     def __init__(self, repository: Repository, *, whole: bool = True) -> None:
         self.repository = repository
         self.whole = whole
-        self.library = UserCode(template=lambda file: None, code=self._code)
+        self.library = UserCode(
+            template=lambda file: None, code=self._code, constant=library_constant
+        )
         self.comments = StateComments()
         self.modules: dict[str, Module] = {}
         self.files: dict[str, str | None] = {}
@@ -113,4 +115,4 @@ class ClassReader:
             user = ModuleValue("", {}, file=file)
             self.files[file] = self.repository.file_of(".".join(stem.parts), user)
         found = self.files[file]
-        return self.repository.read(found) if found is not None else library_source(file)
+        return self.repository.read(found) if found is not None else None

@@ -101,9 +101,10 @@ class _Region:
 
 class Evaluator:
     """Evaluates modules, functions and classes; `made` are the objects of the classes of frameworks
-    in the order in which they were made, `called` the functions that were called, `generators` whether one
-    of them is a generator. `exhausted`: a part of the file took too many steps. `assumed` are the
-    values of conditions that are not known, by their code, `used` those that were needed."""
+    in the order in which they were made, `called` the functions that were called, `generators`
+    whether one of them is a generator. `exhausted`: a part of the file took too many steps.
+    `assumed` are the values of conditions that are not known, by their code, `used` those that were
+    needed."""
 
     def __init__(self, project: Project, assumed: Mapping[str, bool] | None = None) -> None:
         self.project = project

@@ -606,8 +606,10 @@ class _Children:
         for name in names:
             if name in done:
                 continue
-            if name in ends or (name in self.labels and self.jumps):
+            if name in ends:
                 yield Transition(outcome=name, target=name, origin="implicit", span=span)
+            elif self.jumps and name in self.labels:
+                yield Transition(outcome=name, target=name, origin="connector", span=span)
             elif self.outcomes is None:
                 yield Transition(outcome=name, target=ELSEWHERE, span=span, target_span=span)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from smachac.diagnostics.source import Source
 from smachac.pysource.machines import python_library
 from smachac.pysource.machines.builtins import MAKERS
 from smachac.pysource.machines.framework import Framework
@@ -88,13 +87,10 @@ def library_module(known: dict[str, ModuleValue], name: str) -> Value | None:
     return known.get(head) if head in _OF_PACKAGE and name.count(".") == 1 else None
 
 
-def library_source(file: str) -> Source | None:
-    """The text of a module of a framework that has constants alone, by the path of its file."""
-    name = file.removesuffix(".py").replace("/", ".")
+def library_constant(module: str, name: str) -> str | None:
+    """The text that a module of a framework has under a name; None for anything else."""
     for framework in FRAMEWORKS:
-        names = framework.modules.get(name, {})
-        lines = [f"{key} = {value.value!r}" for key, value in names.items()
-                 if isinstance(value, Const)]  # fmt: skip
-        if lines and len(lines) == len(names):
-            return Source(file, "\n".join(lines) + "\n")
+        match framework.modules.get(module, {}).get(name):
+            case Const(value=str() as text):
+                return text
     return None

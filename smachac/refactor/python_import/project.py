@@ -17,6 +17,7 @@ from smachac.ir.traversal import walk
 from smachac.pysource.coverage import unknown_states
 from smachac.pysource.machines.graph import ELSEWHERE, Graph
 from smachac.pysource.machines.project import module_text
+from smachac.pysource.machines.smach_library import SMACH
 from smachac.pysource.python2 import looks_like_python2
 from smachac.python_machines import Built, PythonFile, PythonProject
 from smachac.records import dataclass, field
@@ -56,10 +57,12 @@ class Proof:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Incomplete:
-    """A machine that cannot be imported, as parts of it are not known."""
+    """A machine that cannot be imported, as parts of it are not known, or as it is for a framework
+    whose machines are not imported."""
 
     name: str
     unknown: tuple[tuple[Span, str], ...]
+    framework: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,6 +130,11 @@ def _machines(built: Sequence[Built]) -> tuple[list[PythonMachine], list[Incompl
         root = graph.machine.root
         label = _free(root.name, labels)
         labels.add(label.casefold())
+        if graph.framework is not SMACH:
+            place = (root.span, f"this is a machine for {graph.framework.name}")
+            other = Incomplete(name=label, unknown=(place,), framework=graph.framework.name)
+            incomplete.append(other)
+            continue
         if not _is_known(graph):
             incomplete.append(Incomplete(name=label, unknown=_unknown(graph)))
             continue
