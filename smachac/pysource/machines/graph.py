@@ -401,7 +401,10 @@ class _Builder:
         return "its class is not known"
 
     def _facts(self, value: Instance) -> ClassFacts | None:
-        """What the code of a state does; None if it is not known."""
+        """What the code of a state does; None if it is not known, or if the version of the
+        framework decides which outcomes it has."""
+        if "$optional" in value.slots:
+            return None
         if isinstance(value.cls, Class):
             return self.reader.of_instance(value, self.evaluator.classes(value.cls))
         function = self._callback_of(value)
