@@ -251,6 +251,7 @@ class _Builder:
         mapping = made.slots.get("$outcome_map")
         unknown = isinstance(mapping, Unknown | OneOf)
         items = mapping.items if isinstance(mapping, DictValue) else {}
+        known = {child.name for child in built}
         if not isinstance(items, Mapping):
             items, unknown = {}, True
         for key, value in items.values():
@@ -258,6 +259,8 @@ class _Builder:
             name = _text(key)
             if name is None or conditions is None:
                 unknown = True
+            elif builder.incomplete and not known.issuperset(one.child for one in conditions):
+                continue  # about a state that is not known
             else:
                 place = _place(key, span)
                 rules.append(OutcomeRule(outcome=name, when=tuple(conditions), span=place))

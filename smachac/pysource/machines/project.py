@@ -147,7 +147,8 @@ class Repository:
         self.loaded.pop(f"{file}:main", None)
 
     def sets(self, name: str) -> bool:
-        """Whether any code of the repository sets an attribute of this name."""
+        """Whether any code of the repository sets an attribute of this name, or examines whether
+        there is one."""
         if name not in self.set_names:
             files = (file for some in self.by_stem.values() for file in some)
             pattern = _setting(name)
@@ -157,16 +158,17 @@ class Repository:
         return self.set_names[name]
 
     def may_set(self, name: str) -> bool:
-        """Whether code that was loaded sets an attribute of this name of anything."""
+        """Whether code that was loaded sets an attribute of this name of anything, or examines
+        whether there is one."""
         sets = _setting(name)
         texts = (module.text for module in self.loaded.values() if isinstance(module, ModuleValue))
         return any(text is not None and sets.search(text.source.text) for text in texts)
 
 
 def _setting(name: str) -> re.Pattern[str]:
-    """Code that sets an attribute."""
+    """Code that sets an attribute, or examines whether there is one."""
     word = re.escape(name)
-    return re.compile(rf"\.{word}\b\s*(?:=[^=]|:)|setattr\([^,]*,\s*[\"']{word}[\"']")
+    return re.compile(rf"\.{word}\b\s*(?:=[^=]|:)|(?:set|has)attr\([^,]*,\s*[\"']{word}[\"']")
 
 
 def module_text(source: Source, *, compiled: bool = True) -> PythonText | None:

@@ -158,6 +158,16 @@ def test_what_cannot_work_is_found(name: str, tmp_path: Path) -> None:
 
 
 RIGHT = {
+    "a rule of a concurrence about a state that is not known": """
+sm = smach.StateMachine(outcomes=["yes", "no"])
+with sm:
+    both = smach.Concurrence(["yes", "no"], "no", outcome_map={"yes": {"L": "ok"}})
+    with both:
+        for name in vendor.names():
+            smach.Concurrence.add(name, Do())
+    sm.add("BOTH", both)
+sm.execute()
+""",
     "a copy of a dictionary for each state": """
 table = {"ok": "done"}
 sm = smach.StateMachine(outcomes=["done", "no"])
