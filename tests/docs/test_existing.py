@@ -9,6 +9,7 @@ import pytest
 
 from smachac.commands.cli import main
 from smachac.driver import CODES
+from tests.pysource.machines.test_yasmin import KINDS
 
 PAGE = Path(__file__).parents[2] / "docs" / "existing.md"
 
@@ -20,12 +21,33 @@ def test_the_example(
     monkeypatch.chdir(tmp_path)
     (code, *_) = re.findall(r"^```python\n# parcels\.py\n(.*?)^```", text, re.M | re.S)
     Path("parcels.py").write_text(f"# parcels.py\n{code}")
-    (session,) = re.findall(r"^```console\n\$ smachac (.*?)\n(.*?)^```", text, re.M | re.S)
+    (session, *_) = re.findall(r"^```console\n\$ smachac (.*?)\n(.*?)^```", text, re.M | re.S)
     assert main(session[0].split()) == 1
     assert capsys.readouterr().out == session[1]
     for words in (["build", "parcels.py", "--target", "html"], ["explain", "parcels.py", "WEIGH"]):
         main(words)
     assert Path("sm.html").is_file()
+
+
+def test_the_example_for_yasmin(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = PAGE.read_text("utf-8")
+    monkeypatch.chdir(tmp_path)
+    (code,) = re.findall(r"^```python\n# picking\.py\n(.*?)^```", text, re.M | re.S)
+    Path("picking.py").write_text(f"# picking.py\n{code}")
+    (session,) = re.findall(
+        r"^```console\n\$ smachac (check picking\.py)\n(.*?)^```", text, re.M | re.S
+    )
+    assert main(session[0].split()) == 1
+    assert capsys.readouterr().out == session[1]
+
+
+def test_the_table_of_faults_for_yasmin_has_the_kinds_that_are_tested() -> None:
+    (table,) = re.findall(r"^fault \| smachac \| YASMIN\n-.*?\n(.*?)\n\n", PAGE.read_text("utf-8"),
+                          re.M | re.S)  # fmt: skip
+    codes = [row.split("|")[1].split()[0] for row in table.split("\n")]
+    assert codes == [kind.split()[0] for kind in KINDS]
 
 
 def test_the_files_of_the_import(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,7 +15,7 @@ ALLOWED = {
     "targets/cpp/builtin_states.py": "their code in C++",
     "targets/scxml/leaves.py": "their states in SCXML",
     "frontend/resolved_script.py": "the timer, which sugar adds to a machine",
-    "pysource/machines/smach_library.py": "the classes of SMACH of the same names",
+    "pysource/machines/yasmin_library.py": "the classes of yasmin_ros of the same names",
     "refactor/python_import/scripts.py": "the base of a machine that is a ROS node",
     "refactor/python_import/state_types.py": "the types for classes of smach_ros",
     "refactor/smacha/template_differences.py": "the templates that templates of SMACHA extend",
