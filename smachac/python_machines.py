@@ -269,7 +269,7 @@ def _unreadable(source: Source) -> Diagnostic:
     return errors.unreadable_module(word.span, message, help)
 
 
-def _checked(graph: Graph, rules: Sequence[Rule]) -> Iterator[Diagnostic]:
+def _checked(graph: Graph, rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
     """The findings of rules about a machine: all, or for a framework with other rules the errors
     that are faults in it too, with their effects in its terms."""
     effects = graph.framework.effects

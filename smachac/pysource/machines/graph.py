@@ -389,7 +389,7 @@ class _Builder:
         named = None if added.kind == "concurrence" else _outcomes_of(added)
         optional = self.names(value.slots.get("$optional", TupleValue(())), added.span) or []
         more = [pair for pair in optional if named is None or pair[0] in named]
-        return outcomes and [*{**dict(more), **dict(outcomes)}.items()]
+        return None if outcomes is None else [*{**dict(more), **dict(outcomes)}.items()]
 
     def _missing(self, value: Value, added: Added) -> str:
         """Why the type of a state is not known."""
@@ -751,8 +751,9 @@ def _alike(states: Sequence[Value]) -> Value:
     if len(outcomes) > 1 or None in outcomes or not isinstance(first, Instance):
         return UNKNOWN
     slots = {"$outcomes": first.slots["$outcomes"]}
-    for name in ("$inputs", "$outputs"):
-        lists = [sequence(state.slots.get(name)) for state in states if isinstance(state, Instance)]
+    for name in ("$inputs", "$outputs", "$optional"):
+        lists = [sequence(state.slots.get(name, TupleValue(())))
+                 for state in states if isinstance(state, Instance)]  # fmt: skip
         known = [items for items in lists if items is not None]
         whole = TupleValue(tuple(item for items in known for item in items))
         slots[name] = whole if len(known) == len(lists) else UNKNOWN

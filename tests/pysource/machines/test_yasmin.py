@@ -279,6 +279,18 @@ sm.add_state("E", PublisherState(vendor.Int, "n", vendor.make), {SUCCEED: "F"})
 sm.add_state("F", yasmin_ros.ServiceState(vendor.Srv, "s", vendor.make, ["late"]),
              {SUCCEED: "done", ABORT: "failed", "late": "failed"})
 """,
+    "a ready-made state without outcomes of its own, or one that a condition selects": """
+sm.add_state("A", MonitorState(vendor.Pose, "pose", set(), vendor.monitor), {CANCEL: "B"})
+sm.add_state("B", ServiceState(vendor.Srv, "s", vendor.make) if vendor.fast()
+             else ActionState(vendor.Move, "move", vendor.goal),
+             {SUCCEED: "done", ABORT: "failed", CANCEL: "failed"})
+""",
+    "a state that another one replaces after an exception": """
+try:
+    sm.add_state("A", Do(), {SUCCEED: vendor.after()})
+except RuntimeError:
+    sm.add_state("A", Do("done"))
+""",
     "code of a state that is derived from a ready-made one": """
 class Move(ActionState):
     def __init__(self):
