@@ -52,7 +52,9 @@ def _noun(change: Change) -> str:
     return change.what
 
 
-SAME_BEHAVIOUR = "same behaviour: every run goes through the same states, whatever their names and nesting"
+SAME_BEHAVIOUR = (
+    "same behaviour: every run goes through the same states, whatever their names and nesting"
+)
 """The line of a comparison of machines that are proved to behave alike."""
 
 
