@@ -54,7 +54,7 @@ def news(capsys: pytest.CaptureFixture[str]) -> str:
         ["rename", "robot/main.yml", "FIND", "SEEK"],
         ["rename", "robot/main.yml", "BOX", "WORK"],
         ["rename", "robot/main.yml", "sm/BOX/WAIT", "PAUSE"],
-        ["rename", "robot/main.yml", "late", "slow"],
+        ["rename", "robot/main.yml", "BOX/late", "slow"],
         ["contain", "robot/main.yml", "WORK", "StateMachine", "FIND", "BOX"],
         ["extract", "robot/main.yml", "BOX"],
     ],
@@ -100,3 +100,10 @@ def test_a_new_finding_of_an_edit_is_not_known(
     """LIFT becomes unreachable, and HIDDEN reachable: two findings of one code."""
     assert main(["edit", "robot/main.yml", "transition", "sm/BOX/WAIT", "succeeded", "HIDDEN"]) == 0
     assert "`LIFT`" in news(capsys)
+
+
+def test_a_name_elsewhere_is_proposed_with_its_path(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["rename", "robot/main.yml", "late", "slow"]) == 2
+    assert "did you mean `sm/BOX/late`?" in capsys.readouterr().err
