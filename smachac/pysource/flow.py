@@ -23,6 +23,7 @@ from smachac.pysource.functions import (
     is_plain,
     returns_of,
 )
+from smachac.pysource.local_values import assignment_targets, overwritten
 from smachac.pysource.modules import (
     Module,
     OwnClass,
@@ -590,7 +591,11 @@ class _Reader:
             if imported is not None:
                 return self._add(imported, span, before)
             return self._defined(self.text, constant_node(self.module.names, name), span, before)
-        given = [(_targets(node), node.value) for node in self.nodes
+        lost = overwritten(self.nodes, name)
+        if lost and any(isinstance(node, ast.Try | ast.TryStar) for node in self.nodes):
+            return False  # a handler can see a value that is overwritten
+        stores = [node for node in stores if node not in lost]
+        given = [(assignment_targets(node), node.value) for node in self.nodes
                  if isinstance(node, ast.Assign | ast.AnnAssign)]  # fmt: skip
         values = [value for targets, value in given for target in targets if target in stores]
         match values:
@@ -669,10 +674,6 @@ def _is_no_text(value: ast.expr) -> bool:
         return isinstance(value, ast.Constant) and isinstance(value.value, int | float)
     collections = ast.Tuple | ast.List | ast.Dict | ast.Set
     return isinstance(value, collections | ast.ListComp | ast.DictComp | ast.SetComp)
-
-
-def _targets(node: ast.Assign | ast.AnnAssign) -> list[ast.expr]:
-    return node.targets if isinstance(node, ast.Assign) else [node.target]
 
 
 def _start(word: Word) -> int:

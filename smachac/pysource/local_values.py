@@ -92,3 +92,52 @@ def _assigned(node: ast.stmt) -> list[str]:
         case _:
             parts = []
     return [part.id for part in parts if isinstance(part, ast.Name)]
+
+
+def overwritten(nodes: Sequence[ast.AST], name: str) -> set[ast.expr]:
+    """The targets of assignments of a local variable, among the nodes of a function, that no
+    `return` can see: a later statement of the same block assigns the variable on every path."""
+    found: set[ast.expr] = set()
+    for block in _blocks(nodes):
+        last: list[ast.expr] = []
+        for statement in block:
+            if any(isinstance(part, ast.Return) for part in walk_code(statement)):
+                last = []
+            elif _assigns(statement, name):
+                found.update(last)
+                last = []
+            if isinstance(statement, ast.Assign | ast.AnnAssign):
+                last += [target for target in assignment_targets(statement)
+                         if isinstance(target, ast.Name) and target.id == name]  # fmt: skip
+    return found
+
+
+def _blocks(nodes: Sequence[ast.AST]) -> Iterator[Sequence[ast.stmt]]:
+    for node in nodes:
+        for part in ("body", "orelse", "finalbody"):
+            block = getattr(node, part, None)
+            if isinstance(block, list):
+                yield block
+
+
+def _assigns(statement: ast.stmt, name: str) -> bool:
+    """Whether a statement assigns a variable on every path through it."""
+    match statement:
+        case ast.Assign() | ast.AnnAssign(value=ast.expr()):
+            return any(isinstance(target, ast.Name) and target.id == name
+                       for target in assignment_targets(statement))  # fmt: skip
+        case ast.If(body=body, orelse=orelse):
+            blocks = [body, orelse]
+        case ast.With(body=body):
+            blocks = [body]
+        case ast.Match(cases=[*cases, ast.match_case(pattern=ast.MatchAs(pattern=None), guard=None)
+                              as default]):  # fmt: skip
+            blocks = [case.body for case in (*cases, default)]
+        case _:
+            return False
+    return all(any(_assigns(part, name) for part in block) for block in blocks)
+
+
+def assignment_targets(node: ast.Assign | ast.AnnAssign) -> list[ast.expr]:
+    """The targets of an assignment."""
+    return node.targets if isinstance(node, ast.Assign) else [node.target]

@@ -13,11 +13,11 @@ import pytest
 from hypothesis import assume, given, settings
 
 from smachac.driver import analyse_script
+from smachac.driver.python_machines import PythonProject
 from smachac.frontend.files import Disk
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, StateMachine
 from smachac.ir.traversal import outcome_names, walk
 from smachac.pysource.coverage import coverage_of
-from smachac.python_machines import PythonProject
 from tests.strategies.machines import valid_machines
 from tests.support.examples import examples
 from tests.support.executives import SCRIPTS

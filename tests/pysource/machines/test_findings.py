@@ -44,6 +44,24 @@ def found(code: str, folder: Path, **files: str) -> list[str]:
 
 
 WRONG = {
+    "a first value of the result that a branch keeps": (
+        'class Choose(smach.State):\n    def __init__(self):\n'
+        '        smach.State.__init__(self, outcomes=["ok", "no"])\n'
+        '    def execute(self, userdata):\n        result = ""\n'
+        '        if vendor.ready():\n            result = "ok"\n'
+        '        elif vendor.late():\n            result = "no"\n        return result\n'
+        'sm = smach.StateMachine(outcomes=["ok", "no"])\nwith sm:\n    sm.add("A", Choose())\n',
+        'SM309 result = ""',
+    ),
+    "a first value of the result that is returned before it is replaced": (
+        'class Choose(smach.State):\n    def __init__(self):\n'
+        '        smach.State.__init__(self, outcomes=["ok", "no"])\n'
+        '    def execute(self, userdata):\n        result = "non"\n'
+        '        if vendor.ready():\n            return result\n        result = "ok"\n'
+        '        return result\n'
+        'sm = smach.StateMachine(outcomes=["ok", "no"])\nwith sm:\n    sm.add("A", Choose())\n',
+        'SM309 result = "non"',
+    ),
     "a text as the outcomes": (
         'sm = smach.StateMachine("d")\nwith sm:\n    sm.add("A", smach.State(outcomes=["d"]))\n',
         'SM801 sm = smach.StateMachine("d")',
@@ -158,6 +176,46 @@ def test_what_cannot_work_is_found(name: str, tmp_path: Path) -> None:
 
 
 RIGHT = {
+    "a first value of the result in a function that handles exceptions": """
+class Choose(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=["ok", "no"])
+    def execute(self, userdata):
+        result = ""
+        try:
+            vendor.move()
+        except vendor.Error:
+            pass
+        with vendor.lock():
+            result = "ok"
+        return result
+sm = smach.StateMachine(outcomes=["ok", "no"])
+with sm:
+    sm.add("A", Choose())
+sm.execute()
+""",
+    "a first value of the result that each branch replaces": """
+class Choose(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=["ok", "no"])
+    def execute(self, userdata):
+        result: str = ""
+        vendor.prepare()
+        if vendor.ready():
+            result = "ok"
+        else:
+            match vendor.mode():
+                case 1:
+                    print("one")
+                    result = "no"
+                case _:
+                    result = "ok"
+        return result
+sm = smach.StateMachine(outcomes=["ok", "no"])
+with sm:
+    sm.add("A", Choose())
+sm.execute()
+""",
     "a rule of a concurrence about a state that is not known": """
 sm = smach.StateMachine(outcomes=["yes", "no"])
 with sm:

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from smachac.commands.cli import main
+from smachac.driver.python_machines import PythonFile, PythonProject
 from smachac.frontend.files import Disk
-from smachac.python_machines import PythonFile, PythonProject
 from tests.pysource.machines.test_python_cases import graph_lines
 
 HEAD = """\
