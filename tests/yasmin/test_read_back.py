@@ -124,5 +124,6 @@ def test_examples(script: Path, tmp_path: Path) -> None:
 def test_random_machines(machine: Machine) -> None:
     root = without_others(machine.root)
     assume(isinstance(root, StateMachine))
+    assert isinstance(root, StateMachine)
     with TemporaryDirectory() as folder:
         compare(root, Path(folder))
