@@ -102,6 +102,7 @@ class _Reader:
         self.function = function
         self.userdata = userdata
         self.nodes = list(walk_code(function))
+        self.lost: dict[str, frozenset[ast.expr]] = {}
         self.path_ends = PathEnds(module.names, self._never_returns, self._never_exhausted)
         self.own_name = _first_argument(function)
         self.called: dict[ast.Call, Flow | None] = {}
@@ -591,7 +592,9 @@ class _Reader:
             if imported is not None:
                 return self._add(imported, span, before)
             return self._defined(self.text, constant_node(self.module.names, name), span, before)
-        lost = overwritten(self.nodes, name)
+        if name not in self.lost:
+            self.lost[name] = overwritten(self.nodes, name)
+        lost = self.lost[name]
         if lost and any(isinstance(node, ast.Try | ast.TryStar) for node in self.nodes):
             return False  # a handler can see a value that is overwritten
         stores = [node for node in stores if node not in lost]

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
+from collections.abc import Set as AbstractSet
 
 from smachac.diagnostics.source import Span, Word
 from smachac.pysource.modules import OwnClass
@@ -94,48 +95,69 @@ def _assigned(node: ast.stmt) -> list[str]:
     return [part.id for part in parts if isinstance(part, ast.Name)]
 
 
-def overwritten(nodes: Sequence[ast.AST], name: str) -> set[ast.expr]:
-    """The targets of assignments of a local variable, among the nodes of a function, that no
-    `return` can see: a later statement of the same block assigns the variable on every path."""
+def overwritten(nodes: Sequence[ast.AST], name: str) -> frozenset[ast.expr]:
+    """The targets of assignments of a local variable that no `return` can see: a later statement of
+    the same block assigns the variable on every path. `nodes` are those of a function, each before
+    the nodes in it."""
+    returning = _around(nodes, ast.Return)
+    assigning: set[ast.AST] = set()
+    for node in reversed(nodes):
+        if _assigns(node, name, assigning):
+            assigning.add(node)
     found: set[ast.expr] = set()
-    for block in _blocks(nodes):
-        last: list[ast.expr] = []
-        for statement in block:
-            if any(isinstance(part, ast.Return) for part in walk_code(statement)):
-                last = []
-            elif _assigns(statement, name):
-                found.update(last)
-                last = []
-            if isinstance(statement, ast.Assign | ast.AnnAssign):
-                last += [target for target in assignment_targets(statement)
-                         if isinstance(target, ast.Name) and target.id == name]  # fmt: skip
+    for node in nodes:
+        for block in _blocks(node):
+            last: list[ast.expr] = []
+            for statement in block:
+                if statement in returning:
+                    last = []
+                elif statement in assigning:
+                    found.update(last)
+                    last = []
+                if isinstance(statement, ast.Assign | ast.AnnAssign):
+                    last += _targets_of(statement, name)
+    return frozenset(found)
+
+
+def _around(nodes: Sequence[ast.AST], kind: type[ast.AST]) -> set[ast.AST]:
+    """The nodes of a kind, and those around them."""
+    parents = {inner: node for node in nodes for inner in ast.iter_child_nodes(node)}
+    found: set[ast.AST] = set()
+    for node in nodes:
+        at = node if isinstance(node, kind) else None
+        while at is not None and at not in found:
+            found.add(at)
+            at = parents.get(at)
     return found
 
 
-def _blocks(nodes: Sequence[ast.AST]) -> Iterator[Sequence[ast.stmt]]:
-    for node in nodes:
-        for part in ("body", "orelse", "finalbody"):
-            block = getattr(node, part, None)
-            if isinstance(block, list):
-                yield block
+def _blocks(node: ast.AST) -> list[list[ast.stmt]]:
+    """The blocks of statements in a node."""
+    parts = (getattr(node, part, None) for part in ("body", "orelse", "finalbody"))
+    return [part for part in parts if isinstance(part, list)]
 
 
-def _assigns(statement: ast.stmt, name: str) -> bool:
-    """Whether a statement assigns a variable on every path through it."""
-    match statement:
+def _assigns(node: ast.AST, name: str, assigning: AbstractSet[ast.AST]) -> bool:
+    """Whether a statement assigns a variable on every path through it; `assigning` are the
+    statements in it that do."""
+    match node:
         case ast.Assign() | ast.AnnAssign(value=ast.expr()):
-            return any(isinstance(target, ast.Name) and target.id == name
-                       for target in assignment_targets(statement))  # fmt: skip
+            return bool(_targets_of(node, name))
         case ast.If(body=body, orelse=orelse):
             blocks = [body, orelse]
         case ast.With(body=body):
             blocks = [body]
-        case ast.Match(cases=[*cases, ast.match_case(pattern=ast.MatchAs(pattern=None), guard=None)
-                              as default]):  # fmt: skip
-            blocks = [case.body for case in (*cases, default)]
+        case ast.Match(cases=[*_, ast.match_case(pattern=ast.MatchAs(pattern=None), guard=None)]):
+            blocks = [case.body for case in node.cases]
         case _:
             return False
-    return all(any(_assigns(part, name) for part in block) for block in blocks)
+    return all(any(part in assigning for part in block) for block in blocks)
+
+
+def _targets_of(node: ast.Assign | ast.AnnAssign, name: str) -> list[ast.expr]:
+    """The targets of an assignment that are a variable."""
+    return [target for target in assignment_targets(node)
+            if isinstance(target, ast.Name) and target.id == name]  # fmt: skip
 
 
 def assignment_targets(node: ast.Assign | ast.AnnAssign) -> list[ast.expr]:
