@@ -166,7 +166,7 @@ def _checked(
 ) -> Mapping[str, Machines]:
     """The analyses of the scripts that files, folders and patterns match, by name; none where there
     is no such file. Links that lead out of the folder `top` are not followed."""
-    from smachac.batch import check_scripts
+    from smachac.driver.batch import check_scripts
     from smachac.frontend.discovery import NothingFoundError, scripts_of
     from smachac.frontend.files import Disk, leads_out, lies_inside
 

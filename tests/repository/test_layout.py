@@ -20,7 +20,7 @@ LONGEST_FUNCTION = 70
 
 
 TOUCHES = {
-    "smachac/python_cache.py": "keeps what is known of Python files in the cache folder",
+    "smachac/driver/python_cache.py": "keeps what is known of Python files in the cache folder",
     "smachac/frontend/files.py": "reads scripts, templates and project files",
     "smachac/frontend/messages/standard_messages.py": "reads the common packages of ROS",
     "smachac/runtime/signals.py": "replaces the streams of a terminal that was closed",

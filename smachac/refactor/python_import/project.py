@@ -11,6 +11,7 @@ from pathlib import Path
 from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.diagnostics.source import Source, Span
 from smachac.driver import CODES, Analysis, analyse
+from smachac.driver.python_machines import Built, PythonFile, PythonProject
 from smachac.frontend.files import BUILT_IN, Disk, disk_library, lies_inside
 from smachac.ir.nodes import Leaf, Node
 from smachac.ir.traversal import walk
@@ -18,7 +19,6 @@ from smachac.pysource.coverage import unknown_states
 from smachac.pysource.machines.graph import ELSEWHERE, Graph
 from smachac.pysource.machines.project import module_text
 from smachac.pysource.python2 import looks_like_python2
-from smachac.python_machines import Built, PythonFile, PythonProject
 from smachac.records import dataclass, field
 from smachac.refactor.formatter import format_script
 from smachac.refactor.python_import.proof import differences
