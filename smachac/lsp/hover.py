@@ -26,7 +26,9 @@ def hover_at(view: View, path: str, offset: int, facts: Facts) -> tuple[str, int
     if view.python is not None:
         from smachac.lsp.python_view import hover as python_hover
 
-        return python_hover(view.python, offset)
+        shown = python_hover(view.python, offset)
+        folder = f"{Path(path).parent}{os.sep}"
+        return shown and (shown[0].replace(folder, ""), *shown[1:])
     if view.kind != "script":
         found = schema_hover(view, offset)
         return (found[0], found[1].start, found[1].end) if found is not None else None

@@ -165,7 +165,8 @@ def _word(place: Span) -> str:
 
 def _is_outcome(node: Node, target: Span) -> bool:
     """Whether a target leads to an outcome of a container, and not to the state itself."""
-    return _word(target) in {outcome.name for outcome in node.outcomes} and node.name != _word(target)
+    name = _word(target)
+    return node.name != name and any(outcome.name == name for outcome in node.outcomes)
 
 
 def _target_at(view: PythonView, offset: int) -> Iterator[tuple[str, str, Node, Span]]:
@@ -233,7 +234,7 @@ def definitions(view: PythonView, offset: int) -> list[Span]:
     """The places that the word at an offset names: of the target of a transition the call that adds
     the state, or the declaration of the outcome; of the class of a state that class."""
     found: dict[Span, None] = {}
-    for _, path, node, where in _target_at(view, offset):
+    for _, _, node, where in _target_at(view, offset):
         own = [outcome.span for outcome in node.outcomes if outcome.name == _word(where)]
         found |= dict.fromkeys(own if _is_outcome(node, where) else [name_place(node)])
     if not found:
