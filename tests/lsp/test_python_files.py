@@ -113,6 +113,7 @@ def test_hover_on_states_and_targets(client: Client, folder: Path) -> None:
     uri = client.open(folder / "parcels.py")
     state = hover(client, uri, position(MACHINE, "WEIGH"))
     assert "state sm/WEIGH" in state
+    assert "a Weigh (parcels.py:12:5)" in state
     assert all(word in state for word in ("light", "SORT", "`weight`"))
     assert "unknown" not in state
     assert "state sm/SORT" in hover(client, uri, position(MACHINE, "SORT"))
@@ -179,7 +180,7 @@ def test_a_syntax_error_keeps_the_last_symbols(client: Client, folder: Path) -> 
         "with sm",
         "\tx = (\n",
         "'''",
-        "(" * 900,
+        "(" * 99,
     ):
         client.change(uri, MACHINE + broken)
         assert [item["code"] for item in client.findings(uri)] == ["SM805"]
