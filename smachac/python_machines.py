@@ -166,8 +166,8 @@ class PythonProject:
             modules = {*repository.loaded, *filter(None, reader.files.values())}
             self.readers[key] = reader, frozenset(map(os.path.realpath, modules))
         self.repositories.clear()
-        for key, (reader, modules) in [*self.readers.items()]:
-            if not modules.isdisjoint(changed):
+        for key, (reader, read) in [*self.readers.items()]:
+            if not read.isdisjoint(changed):
                 del self.readers[key]
                 continue
             for file in [file for file in reader.modules if os.path.realpath(file) in changed]:

@@ -113,8 +113,9 @@ def import_command(arguments: Namespace) -> int:
               file=sys.stderr)  # fmt: skip
         for span, reason in machine.unknown:
             print(f"  --> {_place(span)}: {reason}", file=sys.stderr)
-        print("help: `--assume 'CONDITION=true'` selects a branch; `smachac docs existing` shows"
-              " how to make the rest known", file=sys.stderr)  # fmt: skip
+        print("help: add states to it" if is_xml else "help: `--assume 'CONDITION=true'` selects a"
+              " branch; `smachac docs existing` shows how to make the rest known",
+              file=sys.stderr)  # fmt: skip
     return _put(made, arguments) if made.texts else FINDINGS
 
 

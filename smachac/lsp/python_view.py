@@ -173,7 +173,9 @@ def _target_at(view: PythonView, offset: int) -> Iterator[tuple[str, str, Node, 
     """The states, or the container, that the target at an offset names: the name of the machine,
     the path and the node, with the place of the target."""
     for machine, path, node, around in view.nodes():
-        for edge in node.transitions if around is not None else ():
+        if around is None:
+            continue
+        for edge in node.transitions:
             if edge.origin == "written" and _has(edge.target_span, view, offset):
                 above = path.rpartition("/")[0]
                 siblings = [child for child in around.children if child.name == edge.target]

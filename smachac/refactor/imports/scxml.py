@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
 
 from smachac.diagnostics.source import Source, Span
 from smachac.ir.nodes import (
@@ -28,8 +30,9 @@ from smachac.pysource.machines.constructions import Argument, Construction, Name
 from smachac.records import dataclass, field
 from smachac.refactor.imports.xml_source import (
     Edges,
+    Loader,
     NoLiteralError,
-    XmlFault,
+    UnreadableMachineError,
     XmlMachine,
     XmlText,
     inside,
@@ -60,9 +63,13 @@ _EQUAL = re.compile(r"_event\.data(?:\.(\w+))?\s*={2,3}\s*(.+)")
 _IN = re.compile(r"In\(\s*(?:'([^']+)'|\"([^\"]+)\")\s*\)")
 
 
-def read_machine(source: Source, element: Element) -> XmlMachine:
-    """The machine of a document. Raises XmlFault."""
+def read_machine(source: Source, element: Element, load: Loader) -> XmlMachine:
+    """The machine of a document. Raises UnreadableMachineError."""
     return _Reader(source, element).read()
+
+
+id_of = id
+"""The identity of an element: two can be equal."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,7 +97,7 @@ class _Scope:
 
 class _Reader(XmlText):
     def __init__(self, source: Source, root: Element) -> None:
-        super().__init__(source)
+        super().__init__(source, [])
         self.root = root
         self.states: dict[Names, Construction] = {}
         self.userdata: dict[Names, tuple[Argument, ...]] = {}
@@ -114,10 +121,10 @@ class _Reader(XmlText):
         return name if prefix == self.prefix else ""
 
     def id(self, element: Element) -> str:
-        return self.ids[id(element)]
+        return self.ids[id_of(element)]
 
     def find_ids(self) -> None:
-        """Gives each state its id. Raises XmlFault for two of one id."""
+        """Gives each state its id. Raises UnreadableMachineError for two of one id."""
         taken: dict[str, Element] = {}
         nameless: list[Element] = []
         for element in inside(self.root):
@@ -128,16 +135,16 @@ class _Reader(XmlText):
                 nameless.append(element)
                 continue
             if name in taken:
-                raise XmlFault(f"a second state has the id `{name}`", self.span(element, "id"),
-                               "rename one of them")  # fmt: skip
+                message = f"a second state has the id `{name}`"
+                raise UnreadableMachineError(message, self.span(element, "id"), "rename one")
             taken[name] = element
-            self.ids[id(element)] = name
+            self.ids[id_of(element)] = name
         for element in nameless:
             name = f"{self.tag(element)}_{element.line}"
             while name in taken:
                 name += "_"
             taken[name] = element
-            self.ids[id(element)] = name
+            self.ids[id_of(element)] = name
 
     # --- the document
 
@@ -233,7 +240,7 @@ class _Reader(XmlText):
                 self.lose(place, f"the transition on `{step.event}`: it has no target",
                           "write its meaning into the code of the state")  # fmt: skip
             elif target is None:
-                self.lose(place, f"the transition to `{step.target}`, which is in another container",
+                self.lose(place, f"the transition to `{step.target}` of another container",
                           "end the container with an outcome that leads there")  # fmt: skip
             elif outcome in found:
                 self.lose(place, f"a second transition on `{outcome}`", "remove one of the two")
@@ -281,7 +288,9 @@ class _Reader(XmlText):
         for invoke in self.children(element, "invoke"):
             self.lose(self.span(invoke), "`<invoke>` of a state with states in it",
                       "add a state beside them, in a concurrence")  # fmt: skip
-        outcomes = self.outcomes(element, finals, [self.id(child) for child in inner])
+        outcomes = self.outcomes(element, finals)
+        for final in finals:
+            self.lose_others(final)
         scope = _Scope(states=frozenset(map(self.id, inner)), finals=outcomes)
         children = tuple(self.state(child, (*names, self.id(child)), scope) for child in inner)
         initial, place = self.initial(element, scope)
@@ -301,37 +310,31 @@ class _Reader(XmlText):
                   if self.id(final) in outcomes}  # fmt: skip
         return tuple(Outcome(name=name, span=span) for name, span in places.items())
 
-    def outcomes(
-        self, element: Element, finals: Sequence[Element], taken: Sequence[str]
-    ) -> dict[str, str]:
+    def outcomes(self, element: Element, finals: Sequence[Element]) -> dict[str, str]:
         """The outcomes of a container by the ids of its final states: the ids, without that of the
-        container where it begins them."""
-        ours = {self.id(final) for final in finals if not self.is_fault(final)}
+        container where it begins them. In documents of smachac, no outcome stands for the end after
+        an exception: only transitions for exceptions lead there."""
+        taken = {self.id(child) for child in self.children(element, *_STATES)}
+        ids = [self.id(final) for final in finals]
+        taken |= {*ids}
+        own = self.ids.get(id_of(element), "")
         found: dict[str, str] = {}
-        for final in finals:
-            id = self.id(final)
-            if id not in ours:
+        for name in ids:
+            if self.is_ours and name not in self.ends:
                 continue
-            own = self.ids.get(_key(element), "")
-            short = re.sub(rf"^{re.escape(own)}[-_.]", "", id) if own else id
-            clashes = short in taken or short in ours or short in found.values()
-            found[id] = id if clashes else short
-            if not self.is_ours:
-                self.lose_others(final)
+            short = re.sub(rf"^{re.escape(own)}[-_.]", "", name) if own else name
+            found[name] = name if short in taken else short
+            taken.add(found[name])
         return found
 
-    def is_fault(self, final: Element) -> bool:
-        """Whether a document of smachac ends there after an exception: such a final state has no
-        data, and only transitions for exceptions lead there."""
-        if not self.is_ours:
-            return False
-        id = self.id(final)
-        return not any(
-            id == child.attributes.get("target")
-            and not all(self.is_own(event, id) for event in child.attributes["event"].split())
-            and "||" not in child.attributes.get("cond", "")
-            for child in inside(self.root)
-            if self.tag(child) == "transition" and "event" in child.attributes
+    @cached_property
+    def ends(self) -> frozenset[str]:
+        """The targets of all transitions but those for exceptions."""
+        return frozenset(
+            step.target
+            for element in inside(self.root)
+            for step in self.steps(element)
+            if not _after_exception(step)
         )
 
     def initial(self, element: Element, scope: _Scope) -> tuple[str, Span]:
@@ -363,7 +366,7 @@ class _Reader(XmlText):
 
     def done_edges(self, element: Element, finals: Sequence[Element], scope: _Scope) -> Edges:
         """The edges of a compound state: its transitions on the event that it is done."""
-        outcomes = self.outcomes_of(element, finals)
+        outcomes = self.outcomes(element, finals)
         named: list[tuple[str, _Step]] = []
         left = dict(outcomes)
         for step in self.steps(element):
@@ -380,17 +383,11 @@ class _Reader(XmlText):
                     named.append((outcome, step))
         return self.edges(element, scope, named)
 
-    def outcomes_of(self, element: Element, finals: Sequence[Element]) -> dict[str, str]:
-        lost = [*self.lost]
-        found = self.outcomes(element, finals, [self.id(c) for c in self.children(element, *_STATES)])
-        self.lost[:] = lost  # named once, where the container is read
-        return found
-
     def lose_interrupt(self, element: Element, step: _Step) -> None:
         self.lose(self.span(step.element, "event" if step.event else ""),
                   f"the transition on `{step.event}`: it can leave every state in"
                   f" `{self.id(element)}`",
-                  "add the event as an outcome of these states, or a branch of a concurrence")  # fmt: skip
+                  "add the event as an outcome of these states")  # fmt: skip
 
     def ends_with(self, final: Element, condition: str) -> bool:
         """Whether a condition on a done event is true after a final state, as far as it compares
@@ -449,9 +446,7 @@ class _Reader(XmlText):
         )  # fmt: skip
         return leaf(names[-1], short, edges, span)
 
-    def outcome_name(
-        self, element: Element, invokes: Sequence[Element], step: _Step
-    ) -> str | None:
+    def outcome_name(self, element: Element, invokes: Sequence[Element], step: _Step) -> str | None:
         """The outcome that a transition of an atomic state stands for; None if it has none."""
         first = step.event.partition(".")[0]
         if first == "error" or step.event == "*":
@@ -536,7 +531,7 @@ class _Reader(XmlText):
             if step.event not in (f"done.state.{self.id(element)}", "done.state", "done"):
                 self.lose_interrupt(element, step)
                 continue
-            if self.is_ours and "||" in step.condition:
+            if self.is_ours and _after_exception(step):
                 continue  # after an exception
             when = self.conditions(step, ends)
             if when is None:
@@ -544,8 +539,8 @@ class _Reader(XmlText):
                 continue
             if default or any(_hides(rule, when) for rule in rules):
                 self.lose(self.span(step.element, "cond" if step.condition else ""),
-                          "a transition that another one before it replaces: in SMACH, the rule with"
-                          " most conditions applies", "add conditions to one of the two")  # fmt: skip
+                          "a transition after a more general one: in SMACH, the rule with most"
+                          " conditions applies", "add conditions to one of the two")  # fmt: skip
                 continue
             number = len(named)
             outcome = DONE if not when else f"{DONE}_{number + 1}"
@@ -577,11 +572,9 @@ class _Reader(XmlText):
             # a region that smachac makes around a branch: its final states are the outcomes
             child, name = inner[0], self.id(inner[0])
             found = {self.id(final): self.id(final).removeprefix(f"{name}-") for final in finals
-                     if not self.is_fault(final)}  # fmt: skip
+                     if self.id(final) in self.ends}  # fmt: skip
             ends.update({id: (name, outcome) for id, outcome in found.items()})
             node = self.state(child, (*names, name), _Scope(states=frozenset(), finals=found))
-            from dataclasses import replace
-
             places = {edge.target: edge for edge in node.transitions}
             outcomes = node.outcomes
             if self.tag(child) == "state" and not self.children(child, *_STATES, "final"):
@@ -595,7 +588,7 @@ class _Reader(XmlText):
             self.lose(self.span(region), f"the end of the branch `{name}`: it has no final state",
                       "add an outcome that ends the branch")  # fmt: skip
         node = self.state(region, (*names, name), _Scope(states=frozenset()))
-        for id, outcome in self.outcomes_of(region, finals).items():
+        for id, outcome in self.outcomes(region, finals).items():
             ends[id] = name, outcome
         return node
 
@@ -616,15 +609,20 @@ class _Reader(XmlText):
 
 def _with_targets(node: Node) -> tuple[Node, tuple[Outcome, ...]]:
     """A concurrence that is a branch, with the names of its region for its outcomes."""
-    from dataclasses import replace
-
     assert isinstance(node, Concurrence)
     names = {edge.outcome: edge.target for edge in node.transitions}
-    rules = tuple(replace(rule, outcome=names.get(rule.outcome, rule.outcome)) for rule in node.rules)
+    rules = tuple(
+        replace(rule, outcome=names.get(rule.outcome, rule.outcome)) for rule in node.rules
+    )
     outcomes = {names.get(outcome.name, outcome.name): outcome for outcome in node.outcomes}
     default = names.get(node.default_outcome, node.default_outcome)
     made = replace(node, rules=rules, default_outcome=default)
     return made, tuple(Outcome(name=name, span=one.span) for name, one in outcomes.items())
+
+
+def _after_exception(step: _Step) -> bool:
+    """Whether a document of smachac ends a concurrence there because a branch has failed."""
+    return "||" in step.condition
 
 
 def _hides(rule: OutcomeRule, when: Sequence[Condition]) -> bool:
@@ -633,10 +631,6 @@ def _hides(rule: OutcomeRule, when: Sequence[Condition]) -> bool:
     known = {part.child: part.outcome for part in rule.when}
     both = all(known.get(part.child, part.outcome) == part.outcome for part in when)
     return both and bool(when) and len(when) >= len(rule.when)
-
-
-def _key(element: Element) -> int:
-    return id(element)
 
 
 def _outcome(event: str) -> str:

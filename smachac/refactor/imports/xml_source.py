@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from html import unescape
+from typing import TypeAlias
 
 from smachac.diagnostics.source import Source, Span
 from smachac.ir.nodes import Data, Leaf, Outcome, Remap, StateMachine, Struct, Transition
@@ -14,8 +15,12 @@ from smachac.records import dataclass, field
 from smachac.refactor.imports.scripts import Lost
 from smachac.robots.xml_tree import Element
 
-Edges = Mapping[str, tuple[str, Span, Span]]
+Edges: TypeAlias = Mapping[str, tuple[str, Span, Span]]
 """Transitions by outcome: the target, and the places of the outcome and the target."""
+
+
+Loader: TypeAlias = "Callable[[str, str], tuple[Source, Element] | None]"
+"""Returns another file, by the name of the file that includes it and its own; None without one."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -29,7 +34,7 @@ class XmlMachine:
     lost: list[Lost] = field(default_factory=list)
 
 
-class XmlFault(Exception):
+class UnreadableMachineError(Exception):
     """A fault for which nothing of the file can be imported: its place, and what to do."""
 
     def __init__(self, message: str, span: Span, help: str) -> None:
@@ -40,9 +45,9 @@ class XmlFault(Exception):
 class XmlText:
     """The elements of a file. `lost` is what was not taken over."""
 
-    def __init__(self, source: Source) -> None:
+    def __init__(self, source: Source, lost: list[Lost]) -> None:
         self.source = source
-        self.lost: list[Lost] = []
+        self.lost = lost
 
     def span(self, element: Element, attribute: str = "") -> Span:
         """The place of the value of an attribute, or of the start tag."""
@@ -147,7 +152,9 @@ def literal(code: str) -> Data:
         else:
             parts.append(found[0].strip())
     try:
-        return as_data(json.loads("".join(parts), object_pairs_hook=_unlike, parse_constant=_refuse))
+        return as_data(
+            json.loads("".join(parts), object_pairs_hook=_unlike, parse_constant=_refuse)
+        )
     except (ValueError, RecursionError):
         raise NoLiteralError from None
 
