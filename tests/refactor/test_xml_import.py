@@ -68,7 +68,7 @@ def script(made: Imported, folder: Path) -> Machine:
     main_file = folder / "project" / "main.yml"
     source = disk.read(main_file, [])
     assert source is not None
-    machine = analyse(source, disk_library(main_file, [], disk=disk)).machine
+    machine = analyse(source, disk_library(main_file, [], disk=disk), []).machine
     assert machine is not None
     return machine
 
@@ -275,7 +275,7 @@ def test_the_document_of_an_example_has_its_graph(name: str, tmp_path: Path) -> 
     disk = Disk()
     source = disk.read(path, [])
     assert source is not None
-    machine = analyse(source, disk_library(path, [], disk=disk)).machine
+    machine = analyse(source, disk_library(path, [], disk=disk), []).machine
     assert machine is not None
     made = written(machine, tmp_path)
     assert made is not None
@@ -428,13 +428,13 @@ def test_importing_twice_and_over_edits(
     monkeypatch.chdir(tmp_path)
     Path("lift.scxml").write_text(LIFT)
     assert main(["import", "lift.scxml", "-o", "project"]) == 0
-    assert "proof: the graph of main.yml is the graph of lift.scxml: 8" in capsys.readouterr().out
+    assert "proof: the graph of main.yml is the graph of lift.scxml: 9" in capsys.readouterr().out
     first = folder_texts(Path("project"))
     assert main(["import", "lift.scxml", "-o", "project"]) == 0
     assert "is up to date" in capsys.readouterr().out
     assert folder_texts(Path("project")) == first
     assert main(["check", "project/main.yml"]) == 0
-    assert main(["build", "project/main.yml", "-o", "out", "-q"]) == 0
+    assert main(["build", "project/main.yml", "--target", "python", "-o", "out"]) == 0
     script_file = Path("project/main.yml")
     script_file.write_text(script_file.read_text() + "# mine\n")
     assert main(["import", "lift.scxml", "-o", "project"]) == 1

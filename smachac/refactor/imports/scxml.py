@@ -180,6 +180,8 @@ class _Reader(XmlText):
             code = element.attributes.get("expr") or self.content(element)
             span = self.span(element, "expr")
             try:
+                if element.children or "src" in element.attributes:
+                    raise NoLiteralError
                 self.data[name] = literal(code) if code else None, span
             except NoLiteralError:
                 self.lose(span, f"the value of `{name}` is no plain value",

@@ -153,7 +153,7 @@ def literal(code: str) -> Data:
             parts.append(found[0].strip())
     try:
         return as_data(
-            json.loads("".join(parts), object_pairs_hook=_unlike, parse_constant=_refuse)
+            json.loads(" ".join(parts), object_pairs_hook=_unlike, parse_constant=_refuse)
         )
     except (ValueError, RecursionError):
         raise NoLiteralError from None
