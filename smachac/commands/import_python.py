@@ -1,4 +1,4 @@
-"""The command `import`: scripts from a machine in Python for SMACH, with a proof."""
+"""The command `import`: scripts from a machine in Python, SCXML or YASMIN XML, with a proof."""
 
 from __future__ import annotations
 
@@ -31,10 +31,13 @@ examples:
   smachac import machine.py -o project --machine Tour    only those of one machine
   smachac import machine.py -o project --assume "'--fast' in sys.argv=false"
                                                       the branch of an `if` that is not known
+  smachac import machine.scxml -o project             a document of W3C SCXML
+  smachac import demo.xml -o project                  a file of YASMIN's factory or editor
   smachac check project/main.yml                      then: find the errors in the script
   smachac build project/main.yml --target python      and generate its program
 
-The code of your states stays where it is: the scripts name your classes. The command prints what
+The code of your states stays where it is: the scripts name your classes. States of SCXML and
+YASMIN get classes whose code is to be written. The command prints what
 it could not take over, and proves that each script has the same graph as the machine in Python.
 Your code is not run. Files that were edited since an import are never overwritten.
 
@@ -45,7 +48,11 @@ exit codes: 0 all machines were imported and proven, 1 a machine was not, or a f
 
 def import_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
-    parser.add_argument("file", type=as_path, help="a Python file that builds machines")
+    parser.add_argument(
+        "file",
+        type=as_path,
+        help="a Python file that builds machines, an SCXML document, or an XML file of YASMIN",
+    )
     parser.add_argument("-o", "--output", type=as_path, default=".", metavar="DIR",
                         help="the folder of the project (default: the current one)")  # fmt: skip
     machine_name(parser)
