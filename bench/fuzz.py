@@ -26,10 +26,10 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from smachac.batch import analyse_alone
 from smachac.diagnostics.diagnostic import Report, has_errors
 from smachac.diagnostics.source import Source
 from smachac.driver import CODES, analyse, build
+from smachac.driver.batch import analyse_alone
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import Library, memory_library
 from smachac.interpreter.behaviours import builtin_behaviour

@@ -19,8 +19,8 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from smachac.batch import check_scripts
 from smachac.diagnostics.diagnostic import Diagnostic, in_order
+from smachac.driver.batch import check_scripts
 from smachac.frontend.files import Disk
 from smachac.ir.recursion import deep_recursion
 from smachac.lsp import symbols

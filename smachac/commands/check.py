@@ -29,11 +29,11 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import Any, TextIO
 
-    from smachac.batch import Batch
     from smachac.diagnostics.baseline import Baseline
     from smachac.diagnostics.clusters import Cluster
     from smachac.diagnostics.diagnostic import Report
     from smachac.driver import IncrementalState, MachineCheck
+    from smachac.driver.batch import Batch
     from smachac.frontend.files import Disk
     from smachac.pysource.coverage import Coverage
     from smachac.refactor.autofix import FixResult
@@ -213,7 +213,7 @@ def _check_paths(
     previous: dict[str, IncrementalState] | None = None,
 ) -> Batch:
     """The check of some scripts with the options of the command."""
-    from smachac.batch import check_scripts, processes_for
+    from smachac.driver.batch import check_scripts, processes_for
 
     rule = _simulation_rule(arguments)
     alone = rule is not None or previous is not None or disk.texts
@@ -452,7 +452,7 @@ def _watched(arguments: Namespace, used: Iterable[str]) -> list[str]:
     named = [str(path) for path in arguments.script if not os.path.isdir(path)]  # noqa: PTH112
     inside = {*map(str, yaml_files(arguments.script))}
     if arguments.python:
-        from smachac.python_machines import python_files
+        from smachac.driver.python_machines import python_files
 
         inside.update(str(path) for folder in arguments.script for path in python_files(folder))
     return sorted({*named, *inside, *used})

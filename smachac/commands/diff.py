@@ -42,8 +42,8 @@ examples:
   smachac diff old.yml new.yml --format dot | dot -Tsvg > diff.svg   a picture in red and green
   smachac diff old.yml new.yml --format html > diff.html   the same to explore in a browser
 
-exit codes: 0 equal, 1 different or a script that cannot be read, 2 wrong usage,
-70 a bug in smachac
+exit codes: 0 equal, 1 different (also with the same behaviour) or a script that
+cannot be read, 2 wrong usage, 70 a bug in smachac
 """
 
 FORMATS = ("text", "md", "json", "dot", "html")
@@ -166,7 +166,7 @@ def _checked(
 ) -> Mapping[str, Machines]:
     """The analyses of the scripts that files, folders and patterns match, by name; none where there
     is no such file. Links that lead out of the folder `top` are not followed."""
-    from smachac.batch import check_scripts
+    from smachac.driver.batch import check_scripts
     from smachac.frontend.discovery import NothingFoundError, scripts_of
     from smachac.frontend.files import Disk, leads_out, lies_inside
 

@@ -196,8 +196,8 @@ def _report(
     alone: bool = False,
 ) -> Report:
     """The findings of checking a script and of generating Python from it."""
-    from smachac.batch import analyse_alone
     from smachac.driver import CODES, analyse, compile_script
+    from smachac.driver.batch import analyse_alone
     from smachac.frontend.files import disk_library
     from smachac.targets.python import TARGET
 

@@ -39,7 +39,7 @@ def python_finder(arguments: Namespace) -> PythonFiles | None:
     its modules are imported then alone."""
     if not arguments.python:
         return None
-    from smachac.python_machines import files_with_machines
+    from smachac.driver.python_machines import files_with_machines
 
     return files_with_machines
 
@@ -48,7 +48,7 @@ def python_analyses(paths: Iterable[Path], disk: Disk) -> dict[str, Mapping[str,
     """The machines of Python files by the names of file and machine, each with its findings. Those
     of a file that cannot be read have the name UNREAD."""
     from smachac.driver import Analysis
-    from smachac.python_machines import PythonProject, analyses_by_name
+    from smachac.driver.python_machines import PythonProject, analyses_by_name
 
     project = PythonProject(disk)
     found: dict[str, Mapping[str, Analysis]] = {}

@@ -157,6 +157,7 @@ def _python_stub(type_: StateType, names: Aliases) -> str:
         *(f"        self.{name} = {name}" for name in type_.variables),
         "",
         "    def execute(self, userdata):",
+        *(_PREEMPTED if "preempted" in outcomes[1:] else ()),
         *(f"        # {_access(key.name)}: {written(key.type)}" for key in type_.input_keys),
         *(
             f"        {_access(key.name)} = None  # {written(key.type)}"
@@ -165,6 +166,14 @@ def _python_stub(type_: StateType, names: Aliases) -> str:
         f"        return {outcomes[0]!r}",
     ]
     return "\n".join(lines) + "\n"
+
+
+_PREEMPTED = (
+    "        if self.preempt_requested():  # look for it in every loop and wait",
+    "            self.service_preempt()",
+    "            return 'preempted'",
+)
+"""The lines of a stub that answer a request to stop."""
 
 
 def _access(key: str) -> str:

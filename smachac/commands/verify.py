@@ -47,6 +47,7 @@ examples:
   smachac verify main.yml --targets python,cpp   compare the generated C++ too (needs a compiler)
   smachac verify main.yml --targets scxml        compare the SCXML document, on SCION (needs Node)
   smachac verify main.yml --targets yasmin       compare the program for YASMIN (needs YASMIN)
+  smachac verify main.yml --targets flexbe       compare the packages for FlexBE (needs FlexBE)
   smachac verify main.yml --program pick.py      compare this file, edited by hand or built before
   smachac verify main.yml --header pick.hpp      compare this C++ header (needs a compiler)
   smachac verify main.yml --targets cpp --option mode=step   compare the stepped C++
@@ -58,7 +59,7 @@ exit codes: 0 success, 1 a program behaves differently, cannot be run, or the sc
 2 wrong usage, 70 a bug in smachac, 130 interrupted
 """
 
-TARGETS = ("python", "cpp", "scxml", "yasmin")
+TARGETS = ("python", "cpp", "scxml", "yasmin", "flexbe")
 """The targets whose programs `verify` can run."""
 
 SUFFIXES = {
@@ -72,8 +73,8 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
     parser.add_argument("script", type=as_path, help=SCRIPT)
     parser.add_argument("--targets", type=names, metavar="A,B,...",
-                        help="targets to compare: python, cpp, scxml, yasmin (default: those of"
-                        " --program and --header, else python)")  # fmt: skip
+                        help="targets to compare: python, cpp, scxml, yasmin, flexbe (default:"
+                        " those of --program and --header, else python)")  # fmt: skip
     parser.add_argument("--program", type=as_path, metavar="FILE",
                         help="compare this Python file, not a newly generated one")  # fmt: skip
     parser.add_argument("--header", type=as_path, metavar="FILE",
@@ -217,9 +218,12 @@ def _generated_player(
     in C++."""
     from smachac.driver import build
     from smachac.frontend.files import module_folders
+    from smachac.targets import BuildContext
+    from smachac.targets import flexbe as flexbe_target
     from smachac.targets import python as python_target
     from smachac.targets import yasmin as yasmin_target
-    from smachac.verify.players import cpp, python, scxml, yasmin
+    from smachac.targets.runtime_files import runtime_files
+    from smachac.verify.players import cpp, flexbe, python, scxml, yasmin
 
     if target == "cpp":
         return cpp.player(machine, report, bounds, library)
@@ -229,6 +233,11 @@ def _generated_player(
     if target == "yasmin":
         files = build(machine, yasmin_target.TARGET, library, report)
         return yasmin.player(files, machine, folders=folders)
+    if target == "flexbe":
+        files = build(machine, flexbe_target.TARGET, library, report)
+        context = BuildContext(library=library)
+        files |= runtime_files(flexbe_target.TARGET.runtime(machine, context))
+        return flexbe.player(files, machine, folders=folders)
     files = build(machine, python_target.TARGET, library, report)
     ((file, text),) = files.items() or [("", "")]
     return python.player(file, text, machine, folders=folders)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TypeAlias
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, fingerprint
@@ -42,12 +42,16 @@ def acceptable(report: Report) -> Report:
 def render(report: Report) -> str:
     """A report as a baseline: sorted, one finding a line, so that it merges well."""
     counts = Counter(map(_entry_of, report))
-    lines = {}
-    for item in report:
-        entry = _entry_of(item)
-        row: dict[str, object] = dict(zip(FIELDS, entry, strict=True))
-        row |= {"count": counts[entry], "message": item.finding.message}
-        lines[entry] = json.dumps(row, ensure_ascii=True)
+    return _text(_row(item, counts[_entry_of(item)]) for item in report)
+
+
+def _row(item: Diagnostic, count: int) -> dict[str, object]:
+    row: dict[str, object] = dict(zip(FIELDS, _entry_of(item), strict=True))
+    return row | {"count": count, "message": item.finding.message}
+
+
+def _text(rows: Iterable[Mapping[str, object]]) -> str:
+    lines = {tuple(row[field] for field in FIELDS): json.dumps(row) for row in rows}
     body = ",\n    ".join(sorted(lines.values()))
     findings = f"[\n    {body}\n  ]" if body else "[]"
     return f'{{\n  "version": {VERSION},\n  "findings": {findings}\n}}\n'
@@ -100,6 +104,68 @@ def compare(report: Report, known: Baseline) -> tuple[Report, int, int]:
     unknown = {id(item) for item in new}
     found = [item for item in report if id(item) in unknown or is_firm(item)]
     return found, len(report) - len(found), left.total()
+
+
+Renamed = Callable[[str], str]
+"""A text with the names that it has after a change of a script."""
+
+
+def successors(
+    before: Report, after: Report, renamed: Renamed, *, same_behaviour: bool
+) -> dict[Entry, list[Diagnostic]]:
+    """The findings after a change of a script in place of those before it, by the entries of those;
+    only for entries that no longer occur.
+
+    A successor has the code, the state and the arguments of its predecessor, with other names. If
+    the change keeps the behaviour, one with the code and the state is enough, or one with the code:
+    a container that was added is part of its arguments.
+    """
+    lost = _without(before, Counter(map(_entry_of, after)), _entry_of)
+    gained = _without(after, Counter(map(_entry_of, before)), _entry_of)
+
+    def state(item: Diagnostic, name: Renamed) -> str:
+        return name((item.finding.node or "").rpartition("/")[2])
+
+    marks: list[Callable[[Diagnostic, Renamed], object]] = [
+        lambda item, name: (item.code, state(item, name), *map(name, item.finding.arguments))
+    ]
+    if same_behaviour:
+        marks += [lambda item, name: (item.code, state(item, name)), lambda item, _: item.code]
+    found: dict[Entry, list[Diagnostic]] = {}
+    for mark in marks:
+        waiting: dict[object, list[Diagnostic]] = {}
+        for item in reversed(gained):
+            waiting.setdefault(mark(item, str), []).append(item)
+        left = []
+        for item in lost:
+            if others := waiting.get(mark(item, renamed)):
+                found.setdefault(_entry_of(item), []).append(others.pop())
+            else:
+                left.append(item)
+        taken = {id(other) for others in found.values() for other in others}
+        lost, gained = left, [item for item in gained if id(item) not in taken]
+    return found
+
+
+def followed(text: str, found: Mapping[Entry, Sequence[Diagnostic]]) -> str:
+    """A baseline in which findings are replaced by their successors; the same text if it has none
+    of them, or another version."""
+    data = json.loads(text)
+    if data["version"] != VERSION:
+        return text
+    rows = {tuple(str(row[field]) for field in FIELDS): dict(row) for row in data["findings"]}
+    changed = False
+    for entry, others in found.items():
+        for other in others:
+            if entry not in rows:
+                break
+            changed = True
+            rows[entry]["count"] -= 1
+            if rows[entry]["count"] <= 0:
+                del rows[entry]
+            row = rows.setdefault(_entry_of(other), _row(other, 0))
+            row["count"] += 1  # type: ignore[operator]
+    return _text(rows.values()) if changed else text
 
 
 def _without(

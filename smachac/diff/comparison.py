@@ -9,7 +9,8 @@ from typing import Literal
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.diff.matching import corresponding, renamed_words
-from smachac.diff.states import Fact, State, States, states_of, translated, value_text
+from smachac.diff.same_behaviour import paired_states
+from smachac.diff.states import Fact, State, States, renamed, states_of, translated, value_text
 from smachac.driver import Analysis
 from smachac.records import dataclass, field
 
@@ -40,7 +41,9 @@ class Comparison:
 
     `changes` are in the order of the states after the change, removed states last. `states` are
     those before and after; `pairs` the paths after by the paths before. `same` counts the findings
-    that both have. `unread`: one of the machines could not be read, and so there are no changes.
+    that both have. `alike` are the paths after, by those before, of the states that take each
+    other's place in every run, if the machines are proved to behave alike; else None. `unread`: one
+    of the machines could not be read, and so there are no changes.
     """
 
     name: str
@@ -49,6 +52,7 @@ class Comparison:
     added: Report = field(default_factory=list)
     removed: Report = field(default_factory=list)
     same: int = 0
+    alike: Mapping[str, str] | None = None
     unread: bool = False
     before: States = field(default_factory=dict)
     after: States = field(default_factory=dict)
@@ -78,6 +82,7 @@ def compare(before: Analysis | None, after: Analysis | None) -> Comparison:
         added=added,
         removed=removed,
         same=same,
+        alike=paired_states(before, after),
         unread=unread,
         before=old,
         after=new,
@@ -147,13 +152,14 @@ def _fact_changes(known: State, state: State, pairs: Mapping[str, str]) -> Itera
             place=str(state.span),
         )
 
+    before = {renamed(fact, value, pairs): value for fact, value in known.facts.items()}
     for fact, value in state.facts.items():
-        old = known.facts.get(fact)
+        old = before.get(fact)
         if old is None:
             yield change(fact, "added", "", value_text(value))
         elif translated(old, pairs) != value:
             yield change(fact, "changed", value_text(old), value_text(value))
-    for fact, old in known.facts.items():
+    for fact, old in before.items():
         if fact not in state.facts:
             yield change(fact, "removed", value_text(old), "")
 

@@ -13,7 +13,7 @@ from smachac.report.json import diagnostic_data, json_text
 from smachac.report.markdown import cell, table
 from smachac.report.terminal import on_one_line
 
-VERSION = 1
+VERSION = 2
 """The version of the form of the JSON; it increases with every change."""
 
 SIGNS = {"added": "+", "removed": "-", "changed": "~", "renamed": "~", "moved": "~"}
@@ -52,6 +52,12 @@ def _noun(change: Change) -> str:
     return change.what
 
 
+SAME_BEHAVIOUR = (
+    "same behaviour: every run goes through the same states, whatever their names and nesting"
+)
+"""The line of a comparison of machines that are proved to behave alike."""
+
+
 def title(comparison: Comparison) -> str:
     """The name of the script, and its name before, where that is another."""
     names = dict.fromkeys(filter(None, [comparison.was, comparison.name]))
@@ -70,6 +76,8 @@ def render_text(found: Sequence[Comparison]) -> str:
 
 def _lines(comparison: Comparison) -> Iterator[str]:
     yield f"{title(comparison)}: {summary(comparison)}"
+    if comparison.alike is not None and comparison.changes:
+        yield f"  {SAME_BEHAVIOUR}"
     for path, changes in groupby(comparison.changes, lambda change: change.path):
         inside = list(changes)
         if inside[0].what == "state":
@@ -120,6 +128,9 @@ def _markdown(comparison: Comparison) -> Iterator[str]:
     yield f"### {cell(title(comparison))}"
     yield ""
     yield f"{summary(comparison)[0].upper()}{summary(comparison)[1:]}."
+    if comparison.alike is not None and comparison.changes:
+        yield ""
+        yield f"{SAME_BEHAVIOUR[0].upper()}{SAME_BEHAVIOUR[1:]}."
     if comparison.changes:
         yield ""
         yield from table(("", "state", "what", "before", "after"), map(_row, comparison.changes))
@@ -159,6 +170,7 @@ def _data(comparison: Comparison) -> dict[str, Any]:
         "before": comparison.was or None,
         "after": comparison.name or None,
         "equal": comparison.equal,
+        "same_behaviour": comparison.equal or comparison.alike is not None,
         "readable": not comparison.unread,
         "changes": [_change_data(change) for change in comparison.changes],
         "findings": {

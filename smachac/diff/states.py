@@ -12,7 +12,7 @@ from smachac.diagnostics.source import Span
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, Sequence, StateMachine
 from smachac.ir.printer import print_data
-from smachac.ir.properties import in_words
+from smachac.ir.properties import Form, words
 from smachac.ir.traversal import leads_to_child
 from smachac.ir.written import Badge, WrittenState, written
 from smachac.records import dataclass, field
@@ -84,21 +84,53 @@ def states_of(machine: Machine) -> States:
         around = None if state.parent is None else found[state.parent].children
         names = None if around is None else frozenset(view.states[path].name for path in around)
         state.facts = dict(_facts(state, names))
-    found[machine.root.name].facts |= dict(_machine_facts(machine))
+    found[machine.root.name].facts |= dict(_machine_facts(machine, found))
     return found
 
 
-def _machine_facts(machine: Machine) -> Iterator[tuple[Fact, Value]]:
+def _machine_facts(machine: Machine, states: States) -> Iterator[tuple[Fact, Value]]:
     yield ("field", "name"), (machine.root.name,)
     yield ("field", "template"), (machine.base,)
     for variable in machine.variables:
         yield ("variable", variable.name), (print_data(variable.value.data),)
     for param in machine.params:
         yield ("param", param.name), (print_data(param.value.data),)
+    ends = _path_ends(states) if machine.properties else {}
     for property_ in machine.properties:
-        yield ("property", property_.name), (in_words(property_.form),)
+        yield ("property", property_.name), tuple(_property_parts(property_.form, ends))
     if machine.robot is not None:
         yield ("field", "robot"), (machine.robot.name,)
+
+
+def _path_ends(states: States) -> dict[str, list[str]]:
+    """The paths of the states by their names and by their whole paths."""
+    found: dict[str, list[str]] = {}
+    for path, state in states.items():
+        for end in dict.fromkeys([state.name, path]):
+            found.setdefault(end, []).append(path)
+    return found
+
+
+def _property_parts(form: Form, ends: Mapping[str, list[str]]) -> Iterator[str | StateName]:
+    """The parts of a property in words, with the states that it names by a unique name or path."""
+    for part in words(form):
+        if isinstance(part, str):
+            yield part
+            continue
+        paths = ends.get(part.name, []) if part.subject == "path" else []
+        if len(paths) != 1 or paths[0].rpartition("/")[2] != part.name:
+            yield f"`{part}`"
+            continue
+        yield from ("`", StateName(paths[0]), "`" if part.outcome is None else f":{part.outcome}`")
+
+
+def renamed(fact: Fact, value: Value, paths: Mapping[str, str]) -> Fact:
+    """What a fact is about, with other paths for the states: a property without a name has its
+    words as its name."""
+    kind, name = fact
+    if kind != "property" or name != value_text(value):
+        return fact
+    return kind, value_text(translated(value, paths))
 
 
 def _facts(state: State, siblings: frozenset[str] | None) -> Iterator[tuple[Fact, Value]]:

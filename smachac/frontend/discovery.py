@@ -74,8 +74,9 @@ def scripts_of(
     return list(found.values())
 
 
-def yaml_files(arguments: Sequence[Path]) -> Iterator[Path]:
-    """The YAML files in folders, sorted, without those that their project file excludes."""
+def yaml_files(arguments: Sequence[Path], suffixes: tuple[str, ...] = SUFFIXES) -> Iterator[Path]:
+    """The YAML files in folders, or those with other suffixes, sorted, without those that their
+    project file excludes."""
     for argument in arguments:
         if argument.is_dir():
             project = find_project(argument / "script.yml", [])
@@ -86,7 +87,7 @@ def yaml_files(arguments: Sequence[Path]) -> Iterator[Path]:
 
             for top, folders, names in os.walk(argument):
                 folders[:] = [name for name in sorted(folders) if kept(Path(top, name))]
-                paths = (Path(top, name) for name in sorted(names) if name.endswith(SUFFIXES))
+                paths = (Path(top, name) for name in sorted(names) if name.endswith(suffixes))
                 yield from filter(kept, paths)
 
 

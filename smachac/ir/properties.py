@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Literal, TypeAlias
 
 from smachac.diagnostics.source import Span
@@ -112,20 +113,33 @@ def atoms(form: Form) -> Atoms:
 
 def in_words(form: Form) -> str:
     """A property as a sentence."""
+    return "".join(part if isinstance(part, str) else f"`{part}`" for part in words(form))
+
+
+def words(form: Form) -> list[str | Atom]:
+    """The parts of the sentence for a property: its events, and the words around them."""
     match form:
         case Never(after=after, until=until, enter=enter):
-            start = f" after {either(after)}" if after else ""
-            end = f" until {either(until)}" if until else ""
-            return f"never {either(enter)}{start}{end}"
+            start = [" after ", *_either(after)] if after else []
+            end = [" until ", *_either(until)] if until else []
+            return ["never ", *_either(enter), *start, *end]
         case Before(later=later, earlier=earlier):
-            return f"{either(earlier)} before {either(later)}"
+            return [*_either(earlier), " before ", *_either(later)]
         case After(first=first, answer=answer, within=within, before_claim=claims):
-            limit = f" within {within} state{'s' * (within != 1)}" if within else ""
-            claimed = f" before {either(claims)}" if claims else ""
-            return f"{either(answer)} after {either(first)}{limit}{claimed}"
+            limit = [f" within {within} state{'s' * (within != 1)}"] if within else []
+            claimed = [" before ", *_either(claims)] if claims else []
+            return [*_either(answer), " after ", *_either(first), *limit, *claimed]
         case AtMost(event=event, times=times):
-            return f"{either(event)} at most {times} time{'s' * (times != 1)}"
-    return "always ends"
+            return [*_either(event), f" at most {times} time{'s' * (times != 1)}"]
+    return ["always ends"]
+
+
+def _either(events: Atoms) -> Iterator[str | Atom]:
+    """Alternatives, with the words between them."""
+    for number, event in enumerate(events):
+        if number:
+            yield " or "
+        yield event
 
 
 def either(events: Atoms) -> str:

@@ -13,6 +13,13 @@ from pathlib import Path
 
 from smachac.analysis.context import Context
 from smachac.diagnostics.source import Source, Span
+from smachac.driver.python_machines import (
+    PythonFile,
+    PythonProject,
+    builds_machines,
+    drawn,
+    graphs_by_name,
+)
 from smachac.frontend.files import Disk
 from smachac.ir.nodes import Container, Leaf, Machine, Node
 from smachac.ir.recursion import deep_recursion
@@ -21,13 +28,6 @@ from smachac.lsp.symbols import Symbol
 from smachac.pysource.machines.graph import Graph
 from smachac.pysource.machines.values import Class
 from smachac.pysource.source import name_span, python_text
-from smachac.python_machines import (
-    PythonFile,
-    PythonProject,
-    builds_machines,
-    drawn,
-    graphs_by_name,
-)
 from smachac.report.explain_state import explain_state, state_text
 from smachac.report.outline import paragraphs
 

@@ -14,11 +14,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from smachac.analysis.context import Context
-from smachac.batch import Batch, check_scripts
 from smachac.diagnostics.diagnostic import Diagnostic, Report, identity, in_order
 from smachac.diagnostics.repair import Repair
 from smachac.diagnostics.source import Source
 from smachac.driver import CODES, Analysis, IncrementalState, read_machine
+from smachac.driver.batch import Batch, check_scripts
 from smachac.frontend.config import PROJECT_FILES
 from smachac.frontend.discovery import PYTHON_SUFFIX, NothingFoundError, scripts_of
 from smachac.frontend.files import Disk, disk_library, find_project

@@ -418,8 +418,13 @@ def _execute(own: OwnClass, library: UserCode) -> tuple[Flow, ast.FunctionDef | 
 
 
 def _does_nothing(node: ast.stmt) -> bool:
-    """Whether a statement of `execute` is one of a stub: a constant that is kept or returned."""
+    """Whether a statement of `execute` is one of a stub: a constant that is kept or returned, also
+    as the answer to a request to stop."""
     match node:
+        case ast.If(test=ast.Call(func=ast.Attribute(attr="preempt_requested")), orelse=[]):
+            return all(map(_does_nothing, node.body))
+        case ast.Expr(value=ast.Call(func=ast.Attribute(attr="service_preempt"))):
+            return True
         case ast.Pass() | ast.Expr(value=ast.Constant()):
             return True
         case ast.Assign(value=value) | ast.Return(value=value):

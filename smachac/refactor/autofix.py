@@ -9,10 +9,10 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from smachac.batch import Batch
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, fingerprint, identity
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Source
+from smachac.driver.batch import Batch
 from smachac.frontend.files import BUILT_IN
 from smachac.records import dataclass
 

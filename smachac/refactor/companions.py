@@ -1,5 +1,5 @@
-"""Files beside a script that name its states: scenarios and faults of the simulation. A refactoring
-changes them as it changes the script.
+"""Files beside a script that name its states: scenarios, faults of the simulation, and baselines.
+A refactoring changes them as it changes the script.
 
 A scenario is one of a machine if it has no fault with it.
 """
@@ -7,12 +7,15 @@ A scenario is one of a machine if it has no fault with it.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from smachac.diagnostics.baseline import followed, is_baseline, successors
 from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.spelling import is_plain
+from smachac.driver import Analysis
 from smachac.frontend.discovery import yaml_files
 from smachac.frontend.files import Disk
 from smachac.frontend.text.data_files import plain
@@ -46,6 +49,41 @@ def changed_companions(
         edits = [*_scenario_edits(tree, changes), *_fault_edits(tree, changes)]
         if edits:
             found[path] = source, _edited(source.text, edits)
+    return found
+
+
+def changed_baselines(
+    folder: Path,
+    disk: Disk,
+    before: Analysis,
+    after: Analysis,
+    known: Mapping[Path, tuple[Source, str]],
+    *,
+    same_behaviour: bool,
+) -> dict[Path, tuple[Source, str]]:
+    """The baselines in a folder that hold findings of a script, with their texts after a change of
+    it; only those that differ. `known` are texts that were changed before."""
+    if before.machine is None or after.machine is None:
+        return {}
+    words = Changes(before.machine, after.machine).words
+
+    def renamed(text: str) -> str:
+        return re.sub(r"\w+", lambda word: words.get(word[0], word[0]), text)
+
+    found: dict[Path, tuple[Source, str]] = {}
+    later = None
+    for path in yaml_files([folder], (".json",)):
+        source = disk.read(path, [])
+        if source is None or '"fingerprint"' not in source.text:
+            continue
+        text = known[path][1] if path in known else source.text
+        if not is_baseline(text):
+            continue
+        if later is None:
+            later = successors(before.report, after.report, renamed, same_behaviour=same_behaviour)
+        new = followed(text, later)
+        if new != text:
+            found[path] = source, new
     return found
 
 
@@ -84,6 +122,21 @@ class Changes:
             Moved(starts[id(old)], ends[id(new)]) for old, new in _pairs(before.root, after.root)
         )
         self._moved = {pair.before.full: pair for pair in pairs}
+
+    @property
+    def words(self) -> dict[str, str]:
+        """The new names of states, outcomes and keys by the old ones, where each has one."""
+        found: dict[str, set[str]] = {}
+        for pair in self._moved.values():
+            old, new = pair.before.node, pair.after.node
+            columns = [((old.name,), (new.name,)), (outcome_names(old), outcome_names(new))]
+            for one, other in ((old.inputs, new.inputs), (old.outputs, new.outputs)):
+                columns.append((tuple(key.name for key in one), tuple(key.name for key in other)))
+            for names, others in columns:
+                if len(names) == len(others):
+                    for name, other_name in zip(names, others, strict=True):
+                        found.setdefault(name, set()).add(other_name)
+        return {name: min(others) for name, others in found.items() if len(others) == 1}
 
     def moved(self, name: str) -> Moved | None:
         """The state that a path or the end of one names; None where it names none or several, and

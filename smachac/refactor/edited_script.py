@@ -14,7 +14,7 @@ from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.diagnostics.source import Source, Span
 from smachac.driver import CODES, Analysis, analyse
 from smachac.frontend.discovery import scripts_of
-from smachac.frontend.files import Disk, disk_library
+from smachac.frontend.files import Disk, disk_library, find_project, has_project
 from smachac.frontend.loader import Library
 from smachac.frontend.text.yaml_tree import Map, Seq
 from smachac.ir.nodes import Machine
@@ -106,8 +106,8 @@ class EditedScript:
             return None
         return next((path for path, _ in self.others([os.path.realpath(self.path)])), None)
 
-    def others(self, changed: Container[str]) -> Iterator[tuple[Path, Machine]]:
-        """The machines of the other scripts in the same folder that use one of these files and have
+    def others(self, changed: Container[str]) -> Iterator[tuple[Path, Analysis]]:
+        """The analyses of the other scripts in the same folder that use one of these files and have
         no errors."""
         mine = os.path.realpath(self.path)
         for path in scripts_of([self.path.parent], self.disk):
@@ -121,7 +121,7 @@ class EditedScript:
             if found.checked is not None and any(
                 name in changed for name in self.disk.searched_files()
             ):
-                yield path, found.checked
+                yield path, found
 
     def proven(self, span: Span, same: Callable[[Machine, Machine], bool]) -> Analysis:
         """The script after the change. Raises RefusedError unless it and every other script in the
@@ -137,21 +137,30 @@ class EditedScript:
             raise RefusedError(span, message, help)
         if not same(self.machine, after.checked):
             raise RefusedError(span, "the machine would behave differently")
-        self._follow(self.machine, after.checked)
-        for path, machine in self.others(texts.keys() - {os.path.realpath(self.path)}):
-            other = self.read(disk, path).checked
-            if other is None or not same(machine, other):
+        self._follow(self.analysis, after)
+        for path, found in self.others(texts.keys() - {os.path.realpath(self.path)}):
+            other = self.read(disk, path)
+            if found.checked is None or other.checked is None:
+                raise RefusedError(span, f"the script {path} would have an error")
+            if not same(found.checked, other.checked):
                 raise RefusedError(span, f"the machine of {path} would behave differently")
-            self._follow(machine, other)
+            self._follow(found, other)
         return after
 
-    def _follow(self, before: Machine, after: Machine) -> None:
-        """Change the scenarios and faults in the folder of the script that name states of a
-        machine."""
-        from smachac.refactor.companions import changed_companions
+    def _follow(self, before: Analysis, after: Analysis, *, same_behaviour: bool = True) -> None:
+        """Change the scenarios, faults and baselines in the folder of the script, or of its
+        project, that name states of a machine."""
+        from smachac.refactor.companions import changed_baselines, changed_companions
 
-        found = changed_companions(self.path.parent, self.disk, before, after)
+        if before.machine is None or after.machine is None:
+            return
+        folder = self.path.parent
+        found = changed_companions(folder, self.disk, before.machine, after.machine)
         self.companions = {**found, **self.companions}
+        top = find_project(self.path, []).folder if has_project(self.path) else folder
+        self.companions |= changed_baselines(
+            top, self.disk, before, after, self.companions, same_behaviour=same_behaviour
+        )
 
     def changed(self, span: Span, wanted: Callable[[Machine], bool]) -> Analysis:
         """The script after a change of its behaviour; it may have errors. Raises RefusedError
@@ -164,8 +173,7 @@ class EditedScript:
         if not wanted(after.machine):
             help = "write its fields out, or format the script: `smachac fmt`"
             raise RefusedError(span, "the text would become another machine than wanted", help)
-        if self.analysis.machine is not None:
-            self._follow(self.analysis.machine, after.machine)
+        self._follow(self.analysis, after, same_behaviour=False)
         return after
 
     def results(self) -> dict[str, tuple[Source, str]]:

@@ -64,7 +64,7 @@ def find_named(machine: Machine, path: str, kind: str | None) -> tuple[str, Span
     """
     around, _, name = path.rpartition("/")
     found: dict[tuple[str, int, int], tuple[str, Span, str, str]] = {}
-    known: dict[str, None] = {}
+    known: dict[str, str] = {}  # names, each with a path
 
     def note(what: str, where: str, span: Span) -> None:
         found.setdefault((what, id(span.source), span.start), (what, span, name, where))
@@ -73,13 +73,14 @@ def find_named(machine: Machine, path: str, kind: str | None) -> tuple[str, Span
     fixed: RefusedError | None = None
     for other in walk_script(machine.root):
         here, node = other.plain, other.node
-        known.setdefault(node.name)
+        known.setdefault(node.name, here)
         if other.added:
             added = other if _ends(here, path) else added
             continue
         if _ends(here, path):
             note("state", here, node.span)
-        known.update(dict.fromkeys(outcome.name for outcome in node.outcomes))
+        for outcome in node.outcomes:
+            known.setdefault(outcome.name, f"{here}/{outcome.name}")
         if not (_ends(here, around) or (not around and "/" not in here)):
             continue
         fixed = fixed or _fixed_name(node, name)
@@ -92,7 +93,8 @@ def find_named(machine: Machine, path: str, kind: str | None) -> tuple[str, Span
         keys |= {preset.key for preset in node.userdata}
         for child in node.children:
             keys.update(outer_inputs(child), outer_outputs(child))
-        known.update(dict.fromkeys(sorted(keys)))
+        for key in sorted(keys):
+            known.setdefault(key, f"{here}/{key}")
         if name in keys:
             note("key", f"{here}/{name}", node.children[0].span)
     meant = [row for row in found.values() if kind in (None, row[0])]
@@ -102,6 +104,8 @@ def find_named(machine: Machine, path: str, kind: str | None) -> tuple[str, Span
         raise _added_error(added)
     if not meant:
         near = did_you_mean(name, known) or ""
+        if name in known:
+            near = f"did you mean `{known[name]}`?"
         what = kind or "state, outcome or key"
         raise NotFoundError(f"there is no {what} `{path}`\n{near}".rstrip())
     if len(meant) > 1:

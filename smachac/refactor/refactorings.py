@@ -77,8 +77,9 @@ def rename_name(script: EditedScript, path: str, new: str, kind: str | None = No
     rename = RENAME[meant]
     rename(work, script.machine, declared)
     shared = script.editors.keys() - {os.path.realpath(script.path)}
-    for _, machine in script.others(shared) if shared else ():
-        rename(work, machine, declared)
+    for _, found in script.others(shared) if shared else ():
+        assert found.checked is not None
+        rename(work, found.checked, declared)
     return script.proven(declared, lambda one, other: equal_after_rename(one, other, old, new))
 
 

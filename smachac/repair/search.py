@@ -17,12 +17,12 @@ from itertools import chain
 from pathlib import PurePath
 from typing import NamedTuple, TypeAlias
 
-from smachac.batch import Batch, analyse_alone
 from smachac.diagnostics.clusters import Cluster
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, identity
 from smachac.diagnostics.repair import Certainty, Repair, edited_texts
 from smachac.diagnostics.source import Source
 from smachac.driver import Analysis, MachineCheck, analyse
+from smachac.driver.batch import Batch, analyse_alone
 from smachac.frontend.config import PROJECT_FILES
 from smachac.frontend.loader import Library
 from smachac.frontend.text.yaml_recovery import parse_with_recovery

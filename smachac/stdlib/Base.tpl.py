@@ -28,7 +28,7 @@ except ImportError:  # without SMACH: smachac.runtime has the same names
 
 {% if is_node %}
 {% include "ROSNode.tpl.py" %}
-{% else %}
+{% elif standalone %}
 {% include "StopSignals.tpl.py" %}
 {% endif %}
 {% endblock defs %}
@@ -79,7 +79,11 @@ def {{ function_name | default("main") | lower }}():
     preempt_at_shutdown({{ sm_name }})
 {% else %}
     if __name__ == "__main__":
+{% if standalone %}
         stop_at_signals({{ sm_name }}.request_preempt)
+{% else %}
+        signals.stop_at_signals({{ sm_name }})
+{% endif %}
 {% endif %}
     {{ execute | indent(4) }}
     outcome = {{ sm_name }}.execute()
@@ -99,6 +103,10 @@ def {{ function_name | default("main") | lower }}():
 if __name__ == "__main__":
     {{ function_name | default("main") | lower }}()
 {% block exit_code %}
+{% if standalone %}
     raise SystemExit(128 + stop_signals[0] if stop_signals else 0)
+{% else %}
+    raise SystemExit(signals.exit_code())
+{% endif %}
 {% endblock exit_code %}
 {% endblock main %}

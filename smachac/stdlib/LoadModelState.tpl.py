@@ -3,9 +3,7 @@
 class LoadModelState(smach.State):
     """Adds a model to the simulated world."""
 
-    def __init__(
-        self, model_name, model_path=None, body=None, spread=(0, 0, 0), apart=None
-    ):
+    def __init__(self, model_name, model_path=None, body=None, spread=(0, 0, 0), apart=None):
         super().__init__(
             outcomes=["succeeded", "aborted"],
             input_keys=["pose", "reference_frame"],

@@ -35,9 +35,11 @@ def build({{ build_parameters }}):
 {{ functions }}
 {%- endif %}
 {%- block stop_signals %}
+{%- if standalone %}
 
 
 {% include "StopSignals.tpl.py" %}
+{%- endif %}
 {%- endblock %}
 
 
@@ -46,7 +48,7 @@ def {{ function_name | default("main") }}({{ main_parameters }}):
     """Run the state machine once and return its outcome."""
     {{ sm_name }} = build()
     if __name__ == "__main__":
-        stop_at_signals({{ sm_name }}.request_preempt)
+        {{ ("stop_at_signals(" ~ sm_name ~ ".request_preempt)") if standalone else ("signals.stop_at_signals(" ~ sm_name ~ ")") }}
     return {{ sm_name }}.execute()
 {%- endblock %}
 
@@ -55,5 +57,5 @@ def {{ function_name | default("main") }}({{ main_parameters }}):
 if __name__ == "__main__":
     outcome = {{ function_name | default("main") }}()
     print(f"outcome: {outcome}")
-    raise SystemExit({% block exit_code %}128 + stop_signals[0] if stop_signals else outcome is None{% endblock %})
+    raise SystemExit({% block exit_code %}{% if standalone %}128 + stop_signals[0] if stop_signals else outcome is None{% else %}signals.exit_code(outcome is None){% endif %}{% endblock %})
 {%- endblock %}

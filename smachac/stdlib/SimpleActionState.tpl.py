@@ -10,5 +10,6 @@
 {{ add("smach_ros.SimpleActionState", action_server_namespace, action | ros_class("action"),
        goal=goal | ros_fields(action, "action", "Goal") | ros_code(action, "action"), goal_slots=goal_slots,
        goal_cb=goal_cb | exptostr | code, result_slots=result_slots, result_cb=result_cb | exptostr | code,
-       input_keys=input_keys, output_keys=output_keys, exec_timeout=longest, server_wait_timeout=wait) }}
+       input_keys=input_keys | besides(goal_slots, goal_cb, result_cb),
+       output_keys=output_keys | besides(result_slots, goal_cb, result_cb), exec_timeout=longest, server_wait_timeout=wait) }}
 {% endblock body %}

@@ -11,8 +11,8 @@ from smachac.analysis import properties
 from smachac.checks.robot.workspace import unreachable
 from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, Severity
 from smachac.driver import CODES, analyse, build
+from smachac.driver.python_machines import PythonProject
 from smachac.frontend.files import Disk, disk_library, read_source
-from smachac.python_machines import PythonProject
 from smachac.report.explain_code import MAIN, MAIN_IN_PYTHON, explanation
 from smachac.targets import load_target
 from smachac.targets.hiding_files import hiding_files

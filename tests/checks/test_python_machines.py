@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from smachac.driver.python_machines import PythonFile, PythonProject
 from smachac.frontend.files import Disk
-from smachac.python_machines import PythonFile, PythonProject
 from smachac.report.text import render_text
 from tests.conformance.standalone_smach import FOLDER, run_python
 from tests.support.golden import compare_file

@@ -87,6 +87,8 @@ def test_what_changed_since_a_commit(capsys: pytest.CaptureFixture[str]) -> None
     assert diff("main.yml") == 1
     assert capsys.readouterr().out == (
         "main.yml: 1 state renamed, 1 outcome changed\n"
+        "  same behaviour: every run goes through the same states, whatever their names and"
+        " nesting\n"
         "  ~ state sm/PICK\n"
         "      ~ outcome lost: nothing -> failure\n"
         "  ~ state sm/PARK/DOCK: renamed from sm/PARK/HOME\n"

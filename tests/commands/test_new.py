@@ -6,6 +6,7 @@ import json
 import re
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -383,6 +384,18 @@ def test_scenarios_are_of_outcomes_of_the_script(
     (errand / "main.yml").write_text("states: [")
     assert main(["new", "scenario", script]) == 1
     assert not (errand / "scenarios").exists()
+
+
+def test_a_stub_looks_for_a_request_to_stop(project: Path) -> None:
+    assert main(["new", "state", "Grasp", "--outcome", "held", "--outcome", "preempted"]) == 0
+    names: dict[str, Any] = {}
+    exec(Path("robot_states/grasp.py").read_text("utf-8"), names)
+    state = names["Grasp"]()
+    assert state.execute(None) == "held"
+    state.request_preempt()
+    assert (state.execute(None), state.preempt_requested()) == ("preempted", False)
+    assert main(["new", "state", "Look"]) == 0
+    assert "preempt" not in Path("robot_states/look.py").read_text("utf-8")
 
 
 def test_a_stub_has_the_types_of_the_project(

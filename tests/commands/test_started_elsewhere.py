@@ -113,7 +113,8 @@ def test_the_text_is_as_a_formatter_leaves_it(tmp_path: Path) -> None:
     assert main(["build", str(script), "--target", "python", "-o", str(tmp_path / "out")]) == 0
     for tool in (["check"], ["format", "--check"]):
         ended = subprocess.run(
-            [sys.executable, "-m", "ruff", *tool, "--isolated", "--no-cache", "mission.py"],
+            [sys.executable, "-m", "ruff", *tool, "--isolated", "--no-cache", "--line-length=99",
+             "mission.py"],
             cwd=tmp_path / "out", capture_output=True, text=True, timeout=120, check=False,
         )  # fmt: skip
         assert ended.returncode == 0, ended.stdout

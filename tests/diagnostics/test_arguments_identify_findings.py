@@ -17,9 +17,9 @@ from smachac.checks.robot.workspace import unreachable
 from smachac.diagnostics.diagnostic import Finding, Report, Severity, diagnostic
 from smachac.diagnostics.source import Source, Span
 from smachac.driver import CODES, analyse, code_faults
+from smachac.driver.python_machines import PythonProject
 from smachac.frontend.files import Disk, disk_library, read_source
 from smachac.frontend.loader import Library, memory_library
-from smachac.python_machines import PythonProject
 from smachac.report.explain_code import MAIN, MAIN_IN_PYTHON, explanation
 from smachac.targets import BuildContext, load_target
 from tests.support.examples import every, seeds

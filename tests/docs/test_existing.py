@@ -42,7 +42,7 @@ def test_the_files_of_the_import(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 
 
 def test_the_table_of_codes_is_complete() -> None:
-    from smachac.python_machines import CANNOT_WORK
+    from smachac.driver.python_machines import CANNOT_WORK
 
     (table,) = re.findall(r"^code \| fault\n(.*?)\n\n", PAGE.read_text("utf-8"), re.M | re.S)
     shown = set(re.findall(r"SM\d{3}", "\n".join(row.split("|")[0] for row in table.split("\n"))))

@@ -48,7 +48,7 @@ def test_each_target_has_a_section() -> None:
 
 
 def test_blocks_are_found() -> None:
-    assert [folder for folder, _ in shown("python")] == ["09_stacking"]
+    assert [folder for folder, _ in shown("python")] == ["09_stacking", "14_delivery_round"]
     folders = [folder for folder, _ in shown("cpp")]
     assert folders.count("06_callbacks") == 2
     assert folders.count("08_pick_and_place") == 1

@@ -33,11 +33,20 @@ def files_of(machine: Machine, library: Library) -> dict[str, str] | None:
     return files or None
 
 
+def engine_modules() -> dict[str, ModuleType]:
+    """The modules of FlexBE, and of the ROS 2 that it needs, by name."""
+    public = {name: value for name, value in vars(stand_in).items() if name[0] != "_"}
+    names = ("flexbe_core.core", "rclpy", "rclpy.logging", "rclpy.signals")
+    made = {name: ModuleType(name) for name in names}
+    for module in made.values():
+        vars(module).update(public)
+    return {"flexbe_core": stand_in, **made}
+
+
 @contextmanager
 def loaded(files: dict[str, str]) -> Iterator[Any]:
     """The class of the behavior; its packages can be imported meanwhile."""
-    core = ModuleType("flexbe_core.core")
-    vars(core).update({name: value for name, value in vars(stand_in).items() if name[0] != "_"})
+    engine = engine_modules()
     texts = {
         ".".join(PurePosixPath(path).parts[1:])[: -len(".py")]: text
         for path, text in files.items()
@@ -51,9 +60,9 @@ def loaded(files: dict[str, str]) -> Iterator[Any]:
     runtime = f"{states}.smachac_flexbe"
     texts = {runtime: RUNTIME.read_text("utf-8"), **texts}
     order = [runtime, *sorted(name for name in texts if name not in (runtime, behavior)), behavior]
-    names = ["flexbe_core", "flexbe_core.core", *packages, *texts]
+    names = [*engine, *packages, *texts]
     before = {name: sys.modules.get(name) for name in names}
-    sys.modules["flexbe_core"], sys.modules["flexbe_core.core"] = stand_in, core
+    sys.modules.update(engine)
     try:
         for name in packages:
             sys.modules[name] = ModuleType(name)

@@ -429,3 +429,34 @@ class Behavior:
     @classmethod
     def preempt(cls) -> None:
         PreemptableState.preempt = True
+
+
+class LoggingSeverity:
+    FATAL = 50
+
+
+class SignalHandlerOptions:
+    NO = 0
+
+
+class _Node:
+    """A node of ROS 2, as far as a player of behaviors uses it."""
+
+    def get_logger(self) -> _Node:
+        return self
+
+    def set_level(self, level: int) -> None: ...
+    def destroy_node(self) -> None: ...
+
+
+def ok() -> bool:
+    return False
+
+
+def init(*, args: list[str], signal_handler_options: int) -> None: ...
+def shutdown() -> None: ...
+def set_node(node: _Node) -> None: ...
+
+
+def create_node(name: str, *, namespace: str) -> _Node:
+    return _Node()

@@ -43,7 +43,7 @@ def is_shown(text: str, start: str) -> bool:
 
 def test_smach(folder: Path) -> None:
     ((name, text),) = smachac.compile(folder / "deliver.yml", "python").items()
-    assert is_shown(text, "        # deliver.yml:14")
+    assert is_shown(text, "        smach.StateMachine.add(  # deliver.yml:14")
     (folder / name).write_text(text, "utf-8")
     found = subprocess.run(
         [sys.executable, name],

@@ -26,7 +26,7 @@ from smachac.runtime import smach
 from smachac.targets.flexbe import TARGET
 from tests.flexbe import stand_in
 from tests.flexbe.programs import loaded, ready, trace
-from tests.yasmin.test_verify import OWN
+from tests.verify.test_executives import OWN
 
 ROOT = Path(__file__).parents[2]
 LIBRARY = disk_library(ROOT / "main.yml", [])

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from smachac.batch import check_scripts
 from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.driver.batch import check_scripts
 from smachac.frontend.files import Disk
 from smachac.lsp.session import Session
 from tests.support.examples import examples

@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from smachac.analysis.context import Context
-from smachac.batch import check_scripts
 from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.driver.batch import check_scripts
 from smachac.frontend.files import Disk
 from smachac.ir.nodes import Container, Leaf
 from smachac.lsp.session import Session

@@ -67,7 +67,16 @@ def test_the_file_runs_alone_with_warnings_as_errors(name: str, built: Path) -> 
 @pytest.mark.parametrize("tool", [["check"], ["format", "--check"]], ids=lambda tool: tool[0])
 def test_ruff_finds_nothing(tool: list[str], built: Path) -> None:
     ended = subprocess.run(
-        [sys.executable, "-m", "ruff", *tool, "--isolated", "--no-cache", str(built)],
+        [
+            sys.executable,
+            "-m",
+            "ruff",
+            *tool,
+            "--isolated",
+            "--no-cache",
+            "--line-length=99",
+            built,
+        ],
         capture_output=True,
         text=True,
         timeout=120,

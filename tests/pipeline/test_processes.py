@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from smachac.batch import LEAST_SCRIPTS, Batch, check_scripts, processes_for
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.driver import MachineCheck
+from smachac.driver.batch import LEAST_SCRIPTS, Batch, check_scripts, processes_for
 from smachac.frontend.files import Disk
 from smachac.ir.nodes import Machine
 from smachac.repair.search import clusters_of
@@ -129,7 +129,7 @@ def test_an_exception_is_that_of_one_process(project: list[Path]) -> None:
 BLOCKED = """
 import os, signal, sys
 from pathlib import Path
-from smachac.batch import check_scripts
+from smachac.driver.batch import check_scripts
 from smachac.commands.interrupts import end_at_interrupts
 from smachac.frontend.files import Disk
 

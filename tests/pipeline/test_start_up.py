@@ -17,7 +17,7 @@ NOT_NEEDED = (
     *("smachac.grammars.standalone", "smachac.targets.python.package"),
     "smachac.frontend.robots",
     "smachac.pysource.machines",
-    "smachac.python_machines",
+    "smachac.driver.python_machines",
     "smachac.targets.cpp",
     "smachac.targets.html",
     "smachac.repair",

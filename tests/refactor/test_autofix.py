@@ -11,7 +11,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from smachac.batch import Batch, check_scripts
 from smachac.commands.cli import main
 from smachac.commands.files import ChangedError, rewrite_files
 from smachac.diagnostics.diagnostic import (
@@ -24,6 +23,7 @@ from smachac.diagnostics.diagnostic import (
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import Guesser, respelt
+from smachac.driver.batch import Batch, check_scripts
 from smachac.frontend.files import Disk
 from smachac.refactor.autofix import FixResult, apply_fixes
 

@@ -16,11 +16,11 @@ from typing import Any
 import pytest
 
 from smachac.commands.cli import main
+from smachac.driver.python_machines import Built, PythonProject
 from smachac.frontend import schema
 from smachac.frontend.files import Disk
 from smachac.ir.nodes import Key, Leaf, Node, Outcome
 from smachac.pysource.machines import evaluator
-from smachac.python_machines import Built, PythonProject
 from smachac.refactor.equivalence import map_nodes
 from smachac.refactor.imports.proof import differences
 from tests.conformance.standalone_smach import FOLDER

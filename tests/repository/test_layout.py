@@ -20,12 +20,13 @@ LONGEST_FUNCTION = 70
 
 
 TOUCHES = {
-    "smachac/python_cache.py": "keeps what is known of Python files in the cache folder",
+    "smachac/driver/python_cache.py": "keeps what is known of Python files in the cache folder",
     "smachac/frontend/files.py": "reads scripts, templates and project files",
     "smachac/frontend/messages/standard_messages.py": "reads the common packages of ROS",
     "smachac/runtime/signals.py": "replaces the streams of a terminal that was closed",
     "smachac/targets/python/runner.py": "runs what was built, and keeps its output",
     "smachac/verify/players/python.py": "runs what was built, and keeps its output off the report",
+    "smachac/verify/players/flexbe.py": "writes the generated packages to a temporary folder",
     "smachac/verify/players/python_file.py": "runs what a file builds, as python.py does",
     "smachac/verify/players/cpp_file.py": "writes headers of stand-ins to a temporary folder",
     "smachac/runtime/tracing/writer.py": "reports that a trace broke off",

@@ -1,4 +1,4 @@
-"""The functions of generated programs that pass requests to stop on: only where a state answers."""
+"""The function of programs that passes requests to stop on: only where a state answers."""
 
 from __future__ import annotations
 
@@ -7,8 +7,6 @@ from typing import Any
 
 import pytest
 
-from smachac.ir.nodes import Leaf, Machine
-from smachac.ir.traversal import containers
 from smachac.runtime import smach
 from smachac.targets.python import module
 from tests.support.silent_smach import silent_smach
@@ -50,17 +48,8 @@ DEAF = "{template: ScriptedState, outcomes: [done], transitions: {done: done}}"
 def test_a_second_request_is_passed_on_where_a_state_may_answer(state: str, again: bool) -> None:
     files = {"main.yml": NESTED % state, "templates/Own.yml": INTERFACE}
     text = program(analysis_of(files))
-    assert ("sm = stoppable_again(smach" in text) is again
-    assert ("def stoppable_again(" in text) is again
-
-
-def all_wrapped(machine: Machine) -> dict[str, str]:
-    """The functions around containers, as if each state answered."""
-    return {
-        path: "stoppable_again"
-        for path, node in containers(machine.root)
-        if not all(isinstance(child, Leaf) for child in node.children)
-    }
+    assert ("    pass_on_stop_requests(sm)\n    return sm" in text) is again
+    assert ("additions import" in text) is (again or "Sleep" in state)
 
 
 def run(text: str, moments: tuple[int, ...]) -> Iterator[str]:
@@ -102,7 +91,7 @@ def test_without_an_answer_the_run_is_the_same_on_smach(
     analysis = analysis_of({"main.yml": NESTED % inner})
     text = program(analysis)
     with monkeypatch.context() as patched:
-        patched.setattr(module, "wrappers", all_wrapped)
+        patched.setattr(module, "passes_requests_on", lambda machine: True)
         wrapped = program(analysis)
-    assert "stoppable_again" in wrapped
+    assert "pass_on_stop_requests(sm)" in wrapped
     assert [*run(text, moments)] == [*run(wrapped, moments)] == ["A", "C", "LAST", "done"]

@@ -112,25 +112,26 @@ def early(text: str) -> str:
 
 
 def without_rest(text: str) -> str:
-    start = text.index("        # main.yml:18")
+    start = text.index("        smach.StateMachine.add(  # main.yml:18")
     return (text[:start] + text[text.index("    return sm\n") :]).replace('"REST"', '"succeeded"')
 
 
 def with_one_more(text: str) -> str:
     more = 'smach.StateMachine.add("MORE", ScriptedState(outcomes=["a"]), {"a": "preempted"})'
-    return text.replace("    return sm\n", f"        {more}\n    return sm\n")
+    end = "    pass_on_stop_requests(sm)\n"
+    return text.replace(end, f"        {more}\n{end}")
 
 
 def with_another_outcome(text: str) -> str:
     return text.replace(
-        'stoppable_again(smach.StateMachine(outcomes=["succeeded", "preempted"]))',
+        'smach.StateMachine(outcomes=["succeeded", "preempted"])',
         'smach.StateMachine(outcomes=["succeeded", "preempted", "stopped"])',
     )
 
 
 def flat(text: str) -> str:
     state = 'ScriptedState(outcomes=["succeeded", "preempted"])'
-    return text.replace('"GO",\n            sm_go,', f'"GO",\n            {state},')
+    return text.replace('"GO", sm_go,', f'"GO", {state},')
 
 
 def with_a_bad_exception(text: str) -> str:

@@ -239,7 +239,14 @@ def test_exceptions_that_are_caught_are_covered() -> None:
     ]
 
     def uncaught(text: str) -> str:
-        return text.replace("            return outcome\n", "            raise\n")
+        wrong = """\
+def error_as_outcome(state, outcome):
+    state.register_outcomes([outcome])
+    return state
+
+
+"""
+        return text.replace("def build():", f"{wrong}def build():")
 
     assert len(judged(ROOT / "tests/cases/on_error/main.yml", uncaught).disagreements) == 1
 
@@ -265,8 +272,15 @@ def endless(text: str) -> str:
 
 
 def waiting_for_all(text: str) -> str:
-    lines = text.splitlines(keepends=True)
-    return "".join(line for line in lines if "child_termination_cb" not in line)
+    wrong = """\
+def with_timeout(state, seconds, label, made=with_timeout):
+    container = made(state, seconds, label)
+    container._child_termination_cb = None
+    return container
+
+
+"""
+    return text.replace("def build():", f"{wrong}def build():")
 
 
 @pytest.mark.parametrize("break_", [swapped, astray, endless, waiting_for_all])

@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from smachac.diagnostics.source import Span
+from smachac.driver.python_machines import Built, PythonFile, PythonProject
 from smachac.frontend.files import Disk, lies_inside
 from smachac.ir.nodes import Leaf, Node
 from smachac.ir.traversal import walk
@@ -15,7 +16,6 @@ from smachac.pysource.coverage import unknown_states
 from smachac.pysource.machines.graph import ELSEWHERE, Graph
 from smachac.pysource.machines.project import module_text
 from smachac.pysource.python2 import looks_like_python2
-from smachac.python_machines import Built, PythonFile, PythonProject
 from smachac.refactor.imports.project import (
     Imported,
     Incomplete,

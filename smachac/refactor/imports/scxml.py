@@ -583,7 +583,7 @@ class _Reader(XmlText):
                 outcomes = tuple(Outcome(name=target, span=edge.span)
                                  for target, edge in places.items())  # fmt: skip
             elif self.tag(child) == "parallel":
-                node, outcomes = _with_targets(node)
+                node, outcomes = self.with_targets(node)
             return replace(node, outcomes=outcomes, transitions=())
         name = self.id(region)
         if self.tag(region) == "parallel" or not (inner or finals):
@@ -593,6 +593,24 @@ class _Reader(XmlText):
         for id, outcome in self.outcomes(region, finals).items():
             ends[id] = name, outcome
         return node
+
+    def with_targets(self, node: Node) -> tuple[Node, tuple[Outcome, ...]]:
+        """A concurrence that is a branch, with the names of its region for its outcomes. A script
+        has one rule for an outcome."""
+        assert isinstance(node, Concurrence)
+        names = {edge.outcome: edge.target for edge in node.transitions}
+        rules: dict[str, OutcomeRule] = {}
+        for rule in node.rules:
+            name = names.get(rule.outcome, rule.outcome)
+            if name in rules:
+                self.lose(rule.span, f"a second rule for the outcome `{name}` of `{node.name}`",
+                          "add an outcome for it")  # fmt: skip
+            else:
+                rules[name] = replace(rule, outcome=name)
+        outcomes = {names.get(outcome.name, outcome.name): outcome for outcome in node.outcomes}
+        default = names.get(node.default_outcome, node.default_outcome)
+        made = replace(node, rules=tuple(rules.values()), default_outcome=default)
+        return made, tuple(Outcome(name=name, span=one.span) for name, one in outcomes.items())
 
     def conditions(
         self, step: _Step, ends: Mapping[str, tuple[str, str]]
@@ -607,19 +625,6 @@ class _Reader(XmlText):
                 return None
             found.append(Condition(child=end[0], outcome=end[1], span=span))
         return found
-
-
-def _with_targets(node: Node) -> tuple[Node, tuple[Outcome, ...]]:
-    """A concurrence that is a branch, with the names of its region for its outcomes."""
-    assert isinstance(node, Concurrence)
-    names = {edge.outcome: edge.target for edge in node.transitions}
-    rules = tuple(
-        replace(rule, outcome=names.get(rule.outcome, rule.outcome)) for rule in node.rules
-    )
-    outcomes = {names.get(outcome.name, outcome.name): outcome for outcome in node.outcomes}
-    default = names.get(node.default_outcome, node.default_outcome)
-    made = replace(node, rules=rules, default_outcome=default)
-    return made, tuple(Outcome(name=name, span=one.span) for name, one in outcomes.items())
 
 
 def _after_exception(step: _Step) -> bool:

@@ -100,8 +100,8 @@ def _read(source: Source, report: Report, disk: Disk) -> XmlMachine | None:
         format = FORMATS.get(local(root.tag))
         if format is None:
             message = f"`<{root.tag}>` is no machine"
-            raise UnreadableMachineError(message, _place(source, root), "name a file whose first tag is"
-                           " `<scxml>`, or `<StateMachine>` for YASMIN")  # fmt: skip
+            help_ = "name a file whose first tag is `<scxml>`, or `<StateMachine>` for YASMIN"
+            raise UnreadableMachineError(message, _place(source, root), help_)
         with deep_recursion():
             return format.read(source, root, load)
     except XmlError as error:

@@ -142,9 +142,13 @@ class _Node:
             self.observer({"event": event, "path": self.where, **fields})
 
     def ended(self, outcome):
-        """Note the outcome of this visit."""
+        """Note the outcome of this visit. FlexBE raises an error for an outcome that is not
+        declared in a state machine."""
         self.result = outcome
         self.tell("exit", outcome=_written(outcome))
+        is_in_machine = isinstance(self.parent, OperatableStateMachine) and not self.parent.loop
+        if is_in_machine and outcome not in self.outcomes:
+            self.tell("error", message=f"{_written(outcome)!r} is not one of its outcomes")
 
 
 class EventState(_Node, flexbe_core.EventState):

@@ -26,7 +26,7 @@ bundled runtime differs from SMACH".
 
 loginfo: log.Logger = log.loginfo
 logwarn: log.Logger = log.logwarn
-logdebug: log.Logger = log.logdebug
+logdebug: log.Logger = log.logdebug if compat else log.quiet
 logerr: log.Logger = log.logerr
 is_shutdown: Callable[[], bool] = log.is_shutdown
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 import sys
 import threading
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
 from typing import Any
 
 from smachac.runtime import signals
-from smachac.runtime.smach_ros2 import delivery, ros
+from smachac.runtime.smach_ros2 import delivery, parameters, ros
 from smachac.runtime.smach_ros2.node import SmachNode
 from smachac.runtime.smach_ros2.signals import GRACE, PreemptHandler
 
@@ -145,6 +145,38 @@ def run(node: Any, machine: Any, grace: float = GRACE) -> str | None:
         handler.is_executing = False
         handler.discard(machine)
     return outcome
+
+
+def run_once(
+    name: str,
+    build: Callable[..., Any],
+    args: list[str] | None = None,
+    choices: Mapping[str, Sequence[Any]] | None = None,
+) -> str | None:
+    """Start a node, run the machine that `build` makes of it and of the parameters of the node, and
+    stop the node; the outcome.
+
+    `args` are those of `start_node`, `choices` those of `parameters.declared`. Raises
+    ParameterError.
+    """
+    node = start_node(name, args)
+    try:
+        return run(node, build(node, **parameters.declared(node, build, choices)))
+    finally:
+        stop_node(node)
+
+
+def run_main(
+    main: Callable[[], str | None], failures: Collection[str] = ("aborted", "preempted")
+) -> int:
+    """Call the main function of a node and print the outcome; the exit code for it. Parameters that
+    do not fit end the program with exit code 1 and one line with the reason."""
+    try:
+        outcome = main()
+    except parameters.ParameterError as error:
+        raise SystemExit(str(error)) from None
+    print(f"outcome: {outcome}")
+    return exit_code(outcome, failures)
 
 
 def stop_node(node: Any) -> None:

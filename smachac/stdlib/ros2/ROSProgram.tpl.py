@@ -1,18 +1,5 @@
 {% extends "Program.tpl.py" %}
-{% set result = "" if ros_action else "outcome = " %}
-{%- block imports %}
-
-try:
-    import smach
-{%- if smach_ros or introspection %}
-    import smach_ros
-{%- endif %}
-except ImportError:  # without SMACH: smachac.runtime has the same names
-    from smachac.runtime import smach
-{%- if smach_ros or introspection %}
-    from smachac.runtime import smach_ros2 as smach_ros
-{%- endif %}
-{%- endblock %}
+{%- block imports %}{% endblock %}
 {%- block stop_signals %}{% endblock %}
 {%- block main %}
 {%- if ros_action %}
@@ -22,6 +9,9 @@ except ImportError:  # without SMACH: smachac.runtime has the same names
 {%- else %}
     """Run the state machine once in a ROS node and return its outcome."""
 {%- endif %}
+{%- if ros_once %}
+    return {{ ros_once }}
+{%- else %}
 {%- if ros_lifecycle %}
     kind = lifecycle.LifecycleMachineNode
     node = program.start_node({{ node_name | default(name) | literal }}, arguments, kind, build={{ "configured" if ros_values else "build" }})
@@ -49,6 +39,7 @@ except ImportError:  # without SMACH: smachac.runtime has the same names
 {%- endif %}
     finally:
         program.stop_node(node)
+{%- endif %}
 {%- endblock %}
 {%- block end -%}
 {%- if ros_lifecycle and ros_values -%}
@@ -59,28 +50,30 @@ def configured(node):
 
 
 {% endif -%}
+{%- set start = "program.run_main(" ~ (function_name | default("main")) ~ ", failures=" ~ ros_failures ~ ")" -%}
+{%- if ros_action -%}
 def run_node():
-{%- if ros_action %}
     """Run the node and return the exit code."""
-{%- else %}
-    """Run the node, print the outcome and return the exit code for it."""
-{%- endif %}
-{%- if ros_values and not ros_lifecycle %}
+{%- if ros_values %}
     try:
-        {{ result }}{{ function_name | default("main") }}()
+        {{ function_name | default("main") }}()
     except parameters.ParameterError as error:
         raise SystemExit(str(error)) from None
 {%- else %}
-    {{ result }}{{ function_name | default("main") }}()
+    {{ function_name | default("main") }}()
 {%- endif %}
-{%- if ros_action %}
     return program.stop_code()
-{%- else %}
-    print(f"outcome: {outcome}")
-    return program.exit_code(outcome, failures={{ ros_failures }})
-{%- endif %}
 
 
+{% set start = "run_node()" -%}
+{%- elif ros_package -%}
+def run_node():
+    """Run the node, print the outcome and return the exit code for it."""
+    return {{ start }}
+
+
+{% set start = "run_node()" -%}
+{%- endif -%}
 if __name__ == "__main__":
-    raise SystemExit(run_node())
+    raise SystemExit({{ start }})
 {%- endblock %}

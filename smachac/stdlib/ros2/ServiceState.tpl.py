@@ -17,5 +17,6 @@ from smachac.runtime.smach_ros2.message_fields import checking
 {{ add("smach_ros.ServiceState", "node" | code, service_namespace, class,
        request=request | ros_fields(service, "srv", "Request") | ros_code(service, "srv"),
        request_slots=request_slots, request_cb=checks, response_slots=response_slots,
-       response_cb=response_cb | exptostr | code, input_keys=input_keys, output_keys=output_keys) }}
+       response_cb=response_cb | exptostr | code, input_keys=input_keys | besides(request_slots, request_cb, response_cb),
+       output_keys=output_keys | besides(response_slots, request_cb, response_cb)) }}
 {% endblock body %}

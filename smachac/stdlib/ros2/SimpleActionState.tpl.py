@@ -22,5 +22,6 @@ from smachac.runtime.smach_ros2.ros import duration
 {{ add("smach_ros.SimpleActionState", "node" | code, action_server_namespace, class,
        goal=goal | ros_fields(action, "action", "Goal") | ros_code(action, "action"), goal_slots=goal_slots,
        goal_cb=checks, result_slots=result_slots, result_cb=result_cb | exptostr | code,
-       input_keys=input_keys, output_keys=output_keys, exec_timeout=longest, server_wait_timeout=wait) }}
+       input_keys=input_keys | besides(goal_slots, goal_cb, result_cb),
+       output_keys=output_keys | besides(result_slots, goal_cb, result_cb), exec_timeout=longest, server_wait_timeout=wait) }}
 {% endblock body %}

@@ -33,6 +33,7 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """
     package = _package(machine, context)
     options = {name: value for name, value in context.options.items() if name != "package"}
+    options["standalone"] = "true"
     found: Report = [*refused(machine)]
     files = PYTHON.emit(machine, replace(context, options=options), found)
     report.extend(in_order(found))

@@ -24,6 +24,7 @@ OPTIONS = {
     "action": "TYPE: offer the machine as an action of that type; ROS 2 only",
     "lifecycle": "true: a managed node (configure, activate, deactivate); ROS 2 only",
     "package": "true, or NAME: a package for colcon (ament_python); ROS 2 only",
+    "standalone": "true: a program without smachac, with SMACH only (default: true for ROS 1)",
     "ros": "1 or 2: the version of ROS (default: that of the project file, else 2)",
 }
 

@@ -42,9 +42,10 @@ class _AddCall:
     complete: bool
 
 
-def adapted(text: str, node: Node, parent: Container, depth: int) -> str:
+def adapted(text: str, node: Node, parent: Container, depth: int, used: dict[str, None]) -> str:
     """The text that a template prints for a state, completed for an Iterator and for a state that
-    catches its exceptions. Raises NotAddedError and OtherContainerError."""
+    catches its exceptions; `used` gets the functions around the state. Raises NotAddedError and
+    OtherContainerError."""
     _check_owner(text, node, parent)
     in_iterator = isinstance(parent, Iterator)
     if not in_iterator and not node.catches:
@@ -52,7 +53,7 @@ def adapted(text: str, node: Node, parent: Container, depth: int) -> str:
     found = _find(text, node.name)
     if found.complete:
         return text
-    made = structure.made(node, text[found.state])
+    made = structure.made(node, text[found.state], used)
     if in_iterator:
         line = structure.add(node, parent, made, depth)
         return f"{text[: found.call.start]}{line}{text[found.call.stop :]}"

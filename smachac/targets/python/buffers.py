@@ -25,6 +25,7 @@ from smachac.records import dataclass, field
 from smachac.targets import BuildContext
 from smachac.targets.errors import defined_twice, python_2_code
 from smachac.targets.python import structure
+from smachac.targets.python.additions import Additions
 from smachac.targets.python.functions import Plan
 from smachac.targets.python.imports import ProgramNames
 from smachac.targets.python.python2 import modern, parsed
@@ -102,7 +103,8 @@ class ModuleParts:
 
     `classes` are the classes of the user that it imports, `module:Class`, with their names in it.
     `plan` holds the containers that functions build, and `functions` those functions, by their key.
-    `wrappers` are the functions around containers, by path. `own_templates` are the files of the
+    `additions` are the functions and classes of runtime/additions.py (`added`) that it uses, of
+    which it contains the text if it is `standalone`. `own_templates` are the files of the
     user's templates for containers, by type. `names` are those in the printed code. `faults` are
     the findings about templates, without duplicates. `ros` is the version of ROS; `node`: the
     functions of the module have the node of ROS 2 as a parameter. `action`: the type of the action
@@ -116,7 +118,9 @@ class ModuleParts:
     node: bool = False
     action: RosType | None = None
     plan: Plan = field(default_factory=dict)
-    wrappers: Mapping[str, str] = field(default_factory=dict)
+    standalone: bool = False
+    added: Additions = field(default_factory=Additions)
+    additions: dict[str, None] = field(default_factory=dict)
     fresh: Callable[[str, str], str] = field(default_factory=structure.variable_names)
     buffers: Buffers = field(default_factory=buffers)
     used: dict[str, UsedType] = field(default_factory=dict)

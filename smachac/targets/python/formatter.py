@@ -17,13 +17,14 @@ from smachac.targets import comment_lines
 if TYPE_CHECKING:
     from smachac.ir.expressions import Expr
 
-WIDTH = 88
-"""The line length of Black and of Ruff's formatter."""
+WIDTH = 99
+"""The line length of Python in ROS 2 (ament_flake8)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """Items in brackets: on one line if they fit, else one item a line with a trailing comma."""
+    """Items in brackets: on one line if they fit, else one item a line with a trailing comma. The
+    arguments of a call may stand together on a line of their own, as in Ruff's formatter."""
 
     opening: str
     items: tuple[tuple[str, Doc], ...]
@@ -47,6 +48,9 @@ def laid_out(doc: Doc, width: int, before: int = 0, after: int = 0) -> str:
     line = flat(doc)
     if isinstance(doc, str) or not doc.items or before + len(line) + after <= width:
         return line
+    inside = line[len(doc.opening) : len(line) - len(doc.closing)]
+    if doc.closing[0] == ")" and len(inside) <= width - 4:
+        return f"{doc.opening}\n    {inside}\n{doc.closing}"
     lines = [doc.opening]
     for prefix, item in doc.items:
         text = item if isinstance(item, str) else laid_out(item, width - 4, len(prefix), 1)

@@ -37,6 +37,9 @@ MOST_NESTED = 3
 MOST_NESTED_IN_ONE = 12
 """As MOST_NESTED, for programs that are one function. Python allows 20 nested blocks."""
 
+CALLS = ("timeout", "retry")
+"""The sugar that is a call around its state (sugar.py)."""
+
 MOST_PARAMETERS = 5
 """The most parameters of a function. Calls with more differences get a function each."""
 
@@ -150,6 +153,9 @@ def _extracted(
         for child in node.children:
             inner, more = below.pop(f"{path}/{child.name}", (0, 0))
             depth, count = max(depth, inner + 1), count + more + 1
+        if node.sugar in CALLS:  # a call around its state
+            below[path] = depth - 1, count - len(node.children)
+            continue
         large = states is not None and (count > states or script_of(node) != "")
         if path != machine.root.name and (large or depth >= nested) and not inlined(node):
             found.append((path, node))
@@ -245,7 +251,7 @@ def _values(path: str, container: Container, uses: Uses) -> Iterator[_Value]:
             values += [(v.name, v.value.data) for v in node.variables if v.role != "callbacks"]
         else:
             values += [(preset.key, preset.value.data) for preset in node.userdata]
-        if isinstance(node, IteratorNode) and node.items is not None:
+        if isinstance(node, IteratorNode) and node.items is not None and node.sugar not in CALLS:
             values.append((ITEMS, node.items.data))
         for name, data in values:
             use = uses.get((path + state, name))
@@ -292,7 +298,7 @@ def _outside(node: Container) -> Container:
 def _bare(node: Container) -> Container:
     """A container without its states and values."""
     node = replace(node, children=(), userdata=())
-    if isinstance(node, IteratorNode) and node.items is not None:
+    if isinstance(node, IteratorNode) and node.items is not None and node.sugar not in CALLS:
         node = replace(node, items=replace(node.items, data=None))
     return node
 

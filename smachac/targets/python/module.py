@@ -12,12 +12,11 @@ from smachac.diagnostics.diagnostic import Report, has_errors
 from smachac.frontend.errors.references import template_error
 from smachac.ir.nodes import Machine
 from smachac.ir.python_code import parse_module
-from smachac.ir.traversal import walk
 from smachac.pysource.ros_names import Ros
 from smachac.pysource.template_sources import template_finder, uses_own_templates
 from smachac.targets import BuildContext, made_by
 from smachac.targets.errors import python_2_code
-from smachac.targets.python import structure
+from smachac.targets.python.additions import MODULE, Additions
 from smachac.targets.python.buffers import PREPENDED, ModuleParts, printed_line_help
 from smachac.targets.python.formatter import WIDTH, docstring_lines
 from smachac.targets.python.functions import functions, one_function, stand_alone
@@ -37,9 +36,10 @@ from smachac.targets.python.parameters import (
     RosParameters,
     node_variables,
     ros_parameters,
+    runs_once,
 )
 from smachac.targets.python.python2 import modern, parsed
-from smachac.targets.python.ros import action_type, is_managed, is_node, version
+from smachac.targets.python.ros import action_type, is_managed, is_node, standalone, version
 from smachac.targets.python.smacha_context import TESTS, container_variables, filters, plain
 from smachac.targets.python.states import (
     NO_BODY,
@@ -51,7 +51,7 @@ from smachac.targets.python.states import (
     joined,
     lost,
 )
-from smachac.targets.python.stop_requests import stop_functions, wrappers
+from smachac.targets.python.stop_requests import passes_requests_on
 from smachac.targets.templates.engine import BlockError, Blocks
 
 ONE_FUNCTION = {"Program.tpl.py": "Base.tpl.py", "ROSProgram.tpl.py": "ROSBase.tpl.py"}
@@ -65,29 +65,14 @@ value of the script that contains the code has up to 100."""
 STOP_IMPORTS = [f"import {name}" for name in ("os", "signal", "socket", "threading")]
 """The imports of a program that handles signals by itself (StopSignals.tpl.py)."""
 
+SIGNALS = "from smachac.runtime import signals"
+"""The import of a program that lets the bundled runtime handle signals."""
+
 NODE_IMPORTS: Mapping[Ros, list[str]] = {
     1: [*STOP_IMPORTS, "import rospy", "import time"],
     2: ["from smachac.runtime.smach_ros2 import program"],
 }
 """The imports of a program that is a node, by version of ROS."""
-
-CATCHING = '''def error_as_outcome(state, outcome):
-    """Let a state end with an outcome where it would raise an exception, which is logged."""
-
-    def attempt(*userdata):
-        try:
-            return state.attempted(*userdata)
-        except Exception as error:
-            smach.logerr(traceback.format_exc(chain=False))
-            state.caught = error
-            return outcome
-
-    state.attempted, state.execute = state.execute, attempt
-    state.caught = None
-    state.register_outcomes([outcome])
-    return state'''
-"""The function that a module contains if a state catches its exceptions. A trace reads `caught`;
-a scenario replaces `attempted`."""
 
 
 def module_text(machine: Machine, context: BuildContext, report: Report) -> str | None:
@@ -104,10 +89,12 @@ def module_text(machine: Machine, context: BuildContext, report: Report) -> str 
     ros = version(context)
     find = template_finder(context.library, ros)
     action = action_type(machine, context)
+    is_standalone = standalone(context)
+    additions = Additions()
     library = context.library
     blocks = Blocks(
         find,
-        filters=filters(ros),
+        filters={**filters(ros), "addition": additions.text},
         tests=TESTS,
         shown=shown,
         is_own=lambda file: library.own_template(file) is not None,
@@ -123,7 +110,7 @@ def module_text(machine: Machine, context: BuildContext, report: Report) -> str 
         inlined = partial(is_printed_by_template, module)
         module.plan = plan(machine, inlined, settable.uses)
         module.action = action
-        module.wrappers = wrappers(machine)
+        module.standalone, module.added = is_standalone, additions
         try:
             text = _text(machine, settable, module, whole=whole)
         except BlockError as error:
@@ -149,24 +136,22 @@ def _text(
     states = children(inside, module)
     if has_errors(module.faults):
         return None
-    module.buffers["defs"] |= dict.fromkeys(stop_functions(machine, module.wrappers))
-    if any(node.catches for _, node in walk(machine.root)):
-        module.buffers["imports"]["import traceback"] = None
-        module.buffers["defs"][CATCHING] = None
-    notes = structure.notes(machine.root, 1, "")
-    block = container_block(inside, None, states, notes, module)
+    block = container_block(inside, states, after=_after(machine, root, module))
+    _add_additions(module)
     lines = module.blocks.render("Container.tpl.py", "body", block)
     texts = joined(module.buffers)
     built = [function.text for function in module.functions.values()]
     needed, own = class_imports(module.classes, context.levels)
     parts = [*texts.values(), own, lines, *built]
     template = _program_template(template, parts, texts, module)
+    uses_ros = any(_uses(part, _SMACH_ROS) for part in parts)
+    introspection = context.options.get("introspection", "no") == "yes"
     expressions = expression_texts(machine)
     module.names.bound.add(root)
     imports = [
         *_imports(expressions, type_texts(machine), module),
         *needed,
-        *_node_imports(template, settable, module),
+        *_node_imports(template, settable, module, uses_ros=uses_ros or introspection),
     ]
     code, function_code = indent(lines, "    "), "\n\n\n".join(built)
     variables: dict[str, object] = {
@@ -184,8 +169,9 @@ def _text(
         "machine": code,
         "functions": function_code,
         "defined_headers": module.defined_headers,
-        "smach_ros": any(_uses(part, _SMACH_ROS) for part in parts),
-        "introspection": context.options.get("introspection", "no") == "yes",
+        "smach_ros": uses_ros,
+        "introspection": introspection,
+        "standalone": module.standalone,
         **(_node_variables(machine, settable, root, module)),
     }
     text = _rendered(template, variables, imports, own, module) + "\n"
@@ -205,6 +191,28 @@ def _text(
     for statement, part in left_out.items():
         tidy = tidy.replace(statement, part)
     return tidy
+
+
+def _after(machine: Machine, root: str, module: ModuleParts) -> list[str]:
+    """The statement after the states of a machine in the variable `root`, if it is needed."""
+    if not passes_requests_on(machine):
+        return []
+    module.additions["pass_on_stop_requests"] = None
+    return [f"pass_on_stop_requests({root})"]
+
+
+def _add_additions(module: ModuleParts) -> None:
+    """Import what the module uses of runtime/additions.py, or add its text to the definitions."""
+    if not module.additions:
+        return
+    if not module.standalone:
+        module.buffers["imports"][f"from {MODULE} import {', '.join(module.additions)}"] = None
+        return
+    needed = module.added.needed(module.additions)
+    module.buffers["imports"] |= dict.fromkeys(module.added.imports(needed))
+    for name in needed:
+        block = "class_defs" if name in module.added.classes else "defs"
+        module.buffers[block][module.added.text(name)] = None
 
 
 def _definitions(module: ModuleParts) -> list[str]:
@@ -232,17 +240,23 @@ def _node_variables(
     """The variables of the template for a node."""
     if not module.node:
         return NO_NODE
-    lifecycle = is_managed(module.context)
-    return node_variables(machine, settable, root, module.action, lifecycle=lifecycle)
+    return node_variables(machine, settable, root, module.action, module.context.options)
 
 
-def _node_imports(template: str, settable: RosParameters, module: ModuleParts) -> list[str]:
-    """The imports of the code that starts the node, and of that for signals."""
+def _node_imports(
+    template: str, settable: RosParameters, module: ModuleParts, *, uses_ros: bool
+) -> list[str]:
+    """The imports of the code that starts the node, and of that for signals; `uses_ros`: with the
+    states of smach_ros."""
     if template in ("Program.tpl.py", "Base.tpl.py"):
-        return STOP_IMPORTS
+        return STOP_IMPORTS if module.standalone else [SIGNALS]
     if template not in ("ROSProgram.tpl.py", "ROSBase.tpl.py"):
         return []
-    more = ["from smachac.runtime.smach_ros2 import parameters"] if settable.declared else []
+    reads = settable.declared and not runs_once(module.context.options)
+    more = ["from smachac.runtime.smach_ros2 import parameters"] if reads else []
+    if template == "ROSProgram.tpl.py" and module.ros == 2:
+        names = "smach, smach_ros" if uses_ros else "smach"
+        more.append(f"from smachac.runtime.installed import {names}")
     if module.node and is_managed(module.context):
         more.append("from smachac.runtime.smach_ros2 import lifecycle")
     if module.action is not None:
@@ -303,6 +317,8 @@ def _rendered(
     # The template of a user's base may extend that of a node of ROS 2.
     started = module.ros == 2 and "program.start_node(" in text and template != "ROSBase.tpl.py"
     more = NODE_IMPORTS[module.ros] if node or started else []
+    if "signals.stop_at_signals(" in text and SIGNALS not in text:
+        more = [*more, SIGNALS]
     names = ProgramNames()
     for tree in (modern(text).tree, *map(parsed, more)):
         if isinstance(tree, ast.Module):

@@ -285,11 +285,15 @@ NO_NODE: Mapping[str, object] = {"build_parameters": "", "main_parameters": ""}
 
 
 def node_variables(
-    machine: Machine, settable: RosParameters, root: str, action: RosType | None, *, lifecycle: bool
+    machine: Machine,
+    settable: RosParameters,
+    root: str,
+    action: RosType | None,
+    options: Mapping[str, str],
 ) -> dict[str, object]:
     """The variables of the template of a node: the parameters of its functions, the values that its
     parameters may have, the statements that run the machine in the variable `root`, and the
-    outcomes of failure."""
+    outcomes of failure. `options` are those of the build."""
     outcomes = [outcome.name for outcome in machine.root.outcomes]
     failures = [name for name in outcomes if is_failure(name) or name == PREEMPTED]
     given = (
@@ -308,17 +312,29 @@ def node_variables(
     limits = [("choices=", mapping(choices))] if choices else []
     declared = call("parameters.declared", [("", "node"), ("", "build"), *limits])
     values = laid_out(declared, WIDTH - 8, len("values = "))
+    named = {variable.name: variable.value.data for variable in machine.variables}
+    name = literal(named.get("node_name", machine.root.name))
+    run = [("", name), ("", "build"), ("", "arguments"), *limits]
+    once = laid_out(call("program.run_once", run), WIDTH - 4, len("return "))
     return {
         "build_parameters": laid_out(head, WIDTH).removeprefix("def build(").removesuffix("):"),
         "main_parameters": "arguments=None",
         "ros_values": values if settable.declared else "",
         "ros_failures": flat(names(failures)),
         "ros_action": action is not None,
-        "ros_lifecycle": lifecycle,
+        "ros_lifecycle": options.get("lifecycle") == "true",
+        "ros_package": options.get("package", "false") != "false",
+        "ros_once": once.replace("\n", "\n    ") if runs_once(options) else "",
         "ros_run": _serving(machine, root, action)
         if action
         else f"return program.run(node, {root})",
     }
+
+
+def runs_once(options: Mapping[str, str]) -> bool:
+    """Whether a node runs its machine once, and does nothing else."""
+    more = options.get("introspection") == "yes" or options.get("lifecycle") == "true"
+    return not more and "action" not in options
 
 
 def _serving(machine: Machine, root: str, action: RosType) -> str:

@@ -63,6 +63,15 @@ def action_type(machine: Machine, context: BuildContext) -> RosType | None:
     return found
 
 
+def standalone(context: BuildContext) -> bool:
+    """Whether a program contains what it needs beside SMACH, and so runs without smachac; by
+    default those for ROS 1 do, which has SMACH. Raises OptionError."""
+    value = context.options.get("standalone", "true" if version(context) == 1 else "false")
+    if value not in ("true", "false"):
+        raise OptionError(f"`standalone` must be `true` or `false`, not `{value}`")
+    return value == "true"
+
+
 def is_managed(context: BuildContext) -> bool:
     """Whether the options want a managed node, with a lifecycle."""
     return context.options.get("lifecycle") == "true"

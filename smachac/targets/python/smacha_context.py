@@ -7,14 +7,14 @@ import hashlib
 import re
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
+from types import NoneType
 from typing import Any
 
 from smachac.ir.nodes import Concurrence, Container, Data, Expression, Leaf, Node, Struct, Variable
 from smachac.ir.script_code import script_code
 from smachac.ir.traversal import own_outcomes, remapping
 from smachac.pysource.ros_names import Ros
-from smachac.targets.python import structure
-from smachac.targets.python.formatter import call, docstring, flat, literal, string
+from smachac.targets.python.formatter import Doc, call, docstring, flat, literal, string
 from smachac.targets.python.ros import replaced_names, ros_type
 
 
@@ -184,7 +184,21 @@ def filters(ros: Ros) -> dict[str, Callable[..., Any]]:
     }
 
 
+def besides(keys: Any, slots: Any, *callbacks: Any) -> Any:
+    """The keys that a state of ROS does not have by its slots; undefined if there are none. If it
+    has callbacks, all keys are theirs too."""
+    from jinja2 import Undefined
+
+    absent = (Undefined, NoneType)
+    if isinstance(keys, absent) or isinstance(slots, absent):
+        return keys
+    if not all(isinstance(callback, absent) for callback in callbacks):
+        return keys
+    return [key for key in keys if key not in slots] or Undefined()
+
+
 FILTERS: Mapping[str, Callable[..., Any]] = {
+    "besides": besides,
     "checking": checking,
     "exptostr": without_ticks,
     "literal": as_literal,
@@ -228,11 +242,9 @@ def stable_id(path: str) -> str:
     return hashlib.sha256(path.encode("utf-8", "surrogatepass")).hexdigest()[:32]
 
 
-def adding(node: Node, parent: Container, depth: int, callbacks: Data = None) -> Callable[..., str]:
+def adding(added: Callable[[Doc], str]) -> Callable[..., str]:
     """The function `add` of templates: it returns the statement that adds an object of a class.
-
-    `callbacks` are called before the state. Undefined named arguments are omitted.
-    """
+    `added` makes it of the expression for the object. Undefined named arguments are omitted."""
 
     def add(class_name: object, *values: object, **named: object) -> str:
         from jinja2 import Undefined
@@ -243,8 +255,7 @@ def adding(node: Node, parent: Container, depth: int, callbacks: Data = None) ->
             for name, value in named.items()
             if not isinstance(value, Undefined)
         ]
-        made = structure.made(node, call(str(class_name), arguments), callbacks)
-        return structure.add(node, parent, made, depth)
+        return added(call(str(class_name), arguments))
 
     return add
 

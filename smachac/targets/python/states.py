@@ -4,6 +4,7 @@ user."""
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import replace
 from itertools import chain, count
 from textwrap import indent
@@ -14,6 +15,7 @@ from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend import schema
 from smachac.frontend.errors.references import template_error
+from smachac.frontend.resolved_script import TIMER
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import (
     Concurrence,
@@ -60,28 +62,11 @@ from smachac.targets.python.smacha_context import (
     plain,
     state_variables,
 )
+from smachac.targets.python.sugar import Layer, layers, wrapped
 from smachac.targets.templates.engine import BlockError, Page
 
 _PRESET = re.compile(r"\s*\w+\.userdata\.(\w+) = ")
 """A line of a state's template that sets userdata, which the container may have set already."""
-
-WITH_CALLBACKS = '''def with_callbacks(state, callbacks):
-    """Let a state first call functions of its userdata, each for the key of its name."""
-
-    def call_and_execute(userdata):
-        for key in sorted(callbacks):
-            function = callbacks[key]
-            if not smach.has_smach_interface(function):
-                userdata[key] = function(userdata)
-            else:  # it writes its keys itself
-                inputs = function.get_registered_input_keys()
-                outputs = function.get_registered_output_keys()
-                function(smach.Remapper(userdata, inputs, outputs, {}))
-        return execute(userdata)
-
-    execute, state.execute = state.execute, call_and_execute
-    return state'''
-"""The function that a module contains if a state has callbacks that its class does not call."""
 
 DEFINED = "\n\n\n"
 """The text between two definitions."""
@@ -115,14 +100,63 @@ class EmittedContainer:
         return literal(data if use is None else use.data)
 
 
-def container(node: Container, parent: EmittedContainer, path: str, module: ModuleParts) -> str:
-    """The code of a container in another one and of everything in it, without the indentation of
-    its block."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Added:
+    """A state to be added to a container: `outer` is the node with its name and transitions, which
+    is the state itself or the outermost container of its sugar; `around` are the containers of
+    sugar that are calls."""
+
+    outer: Node
+    around: list[Layer] = field(default_factory=list)
+
+    def statement(
+        self,
+        node: Node,
+        made: Doc,
+        inside: EmittedContainer,
+        module: ModuleParts,
+        *,
+        callbacks: Data = None,
+        place: bool = True,
+    ) -> str:
+        """The statement that adds the state `node`, made by an expression, to a container. `place`:
+        with its place in the script."""
+        state = structure.made(node, made, module.additions, callbacks)
+        whole = wrapped(state, self.around, module.additions)
+        note = structure.place(self.outer) if place else ""
+        return structure.add(self.outer, inside.node, whole, inside.depth + 1, note)
+
+
+def _state(node: Node, inside: EmittedContainer, path: str, module: ModuleParts) -> str:
+    """The code of a state with everything in it, without the indentation of its block."""
+    around, inner, inner_path = layers(node, path, inside.value)
+    if around and _is_added_by_template(inner, module):
+        around, inner, inner_path = [], node, path
+    added = Added(outer=node, around=around)
+    if isinstance(inner, Leaf):
+        return _leaf(inner, added, inside, inner_path, module)
+    return _container(inner, added, inside, inner_path, module)
+
+
+def _is_added_by_template(node: Node, module: ModuleParts) -> bool:
+    """Whether a template of the user adds a state to its container, or defines the timer."""
+    library = module.context.library
+    if library.own_template(f"{TIMER}.tpl.py") is not None:
+        return True
+    if not isinstance(node, Leaf):
+        return own_template(node, module) is not None
+    used = _used(node, module)
+    return used.whole and library.own_template(used.template) is not None
+
+
+def _container(
+    node: Container, added: Added, parent: EmittedContainer, path: str, module: ModuleParts
+) -> str:
     template = own_template(node, module)
     if template is not None:
         return _by_template(node, parent, template, path, module)
     if path in module.plan:
-        return _called(node, parent, path, module)
+        return _called(node, added, parent, path, module)
     inside = EmittedContainer(
         node=node,
         variable=module.fresh(variable_name(node), "sm_"),
@@ -131,34 +165,37 @@ def container(node: Container, parent: EmittedContainer, path: str, module: Modu
         uses=parent.uses,
     )
     states = children(inside, module)
-    notes = structure.notes(node, inside.depth)
-    block = container_block(inside, parent, states, notes, module)
+    notes = structure.documentation(added.outer.doc, inside.depth).rstrip("\n")
+    add = added.statement(node, inside.variable, parent, module, place=False)
+    block = container_block(inside, states, notes, add)
     return module.blocks.render("Container.tpl.py", "body", block)
 
 
 def container_block(
     inside: EmittedContainer,
-    parent: EmittedContainer | None,
     states: str,
-    notes: str,
-    module: ModuleParts,
+    notes: str = "",
+    add: str = "",
+    after: Iterable[str] = (),
+    *,
+    place: bool = True,
 ) -> dict[str, object]:
     """The variables of the built-in template of a container. `states` is the code of its states,
-    `notes` the comment above it. Without `parent` it is the result of a function."""
+    `notes` the comment above it, `add` the statement that adds it to its container, and `after` are
+    statements that follow its states. `place`: with the place of it in the script."""
     node, variable, depth = inside.node, inside.variable, inside.depth
-    wrapper = module.wrappers.get(inside.path, "")
     return {
         "place": structure.place(node),
         "notes": notes,
         "name": node.name,
         "sm_name": variable,
-        "construct": structure.construct(node, variable, depth, _items(inside), wrapper),
+        "construct": structure.construct(
+            node, variable, depth, _items(inside), structure.place(node) if place else ""
+        ),
         "presets": [*structure.userdata(variable, depth, _presets(inside)), *inside.lines()],
         "children": indent(states or "pass", "    "),
-        "after": structure.initial(node, variable),
-        "add": structure.add(node, parent.node, structure.made(node, variable), depth)
-        if parent is not None
-        else "",
+        "after": [*structure.initial(node, variable), *after],
+        "add": add,
     }
 
 
@@ -188,10 +225,7 @@ def children(inside: EmittedContainer, module: ModuleParts) -> str:
     for child in structure.children(inside.node):
         below = f"{inside.path}/{child.name}"
         try:
-            if isinstance(child, Leaf):
-                states.append(_leaf(child, inside, below, module))
-            else:
-                states.append(container(child, inside, below, module))
+            states.append(_state(child, inside, below, module))
         except BlockError as error:
             module.fault(_in_container(error, inside.node), child)
     return "\n\n".join(states)
@@ -236,10 +270,12 @@ def _by_template(
     try:
         states = children(inside, module)
         inner, module.buffers = module.buffers, buffers()
+        made = structure.made(node, variable, module.additions)
+        add = structure.add(node, parent.node, made, inside.depth)
         page = module.blocks.page(
             template,
             {
-                **container_block(inside, parent, states, "", module), **variables, **joined(inner),
+                **container_block(inside, states, add=add), **variables, **joined(inner),
                 **headers(inside), "body": states, "defined_headers": module.defined_headers,
             },
         )  # fmt: skip
@@ -249,7 +285,7 @@ def _by_template(
             if name not in page.names or lost("\n".join(lines), "\n".join(own)):
                 module.buffers[name] = {**lines, **own}
         _headers(page, parent, node, module)
-        text = _adapted(module.code(page, "body", node), node, parent, page)
+        text = _adapted(module.code(page, "body", node), node, parent, page, module)
         if lost(states, text):
             span = module.blocks.block_span(template, "body") or node.span
             raise BlockError(template_error(span, *NO_BODY, ("body",)))
@@ -296,7 +332,9 @@ def _pass_on(inner: Buffers, outer: Buffers) -> None:
         outer[name].update(texts)
 
 
-def _called(node: Container, parent: EmittedContainer, path: str, module: ModuleParts) -> str:
+def _called(
+    node: Container, added: Added, parent: EmittedContainer, path: str, module: ModuleParts
+) -> str:
     """The code that adds a container which a function of the module builds. The function is printed
     at its first call."""
     planned = module.plan[path]
@@ -331,9 +369,9 @@ def _called(node: Container, parent: EmittedContainer, path: str, module: Module
     made = call(
         name, [*given, *((f"{parameter}=", value) for parameter, value in arguments.items())]
     )
-    doc = node.doc if node.doc != function.doc else ""
-    added = structure.add(node, parent.node, structure.made(node, made), depth)
-    return f"{structure.notes(node, depth, doc)}\n{added}"
+    doc = added.outer.doc if added.outer.doc != function.doc else ""
+    add = added.statement(node, made, parent, module)
+    return structure.documentation(doc, depth) + add
 
 
 def _function(
@@ -345,7 +383,7 @@ def _function(
 ) -> str:
     """The function that builds a container."""
     states = children(inside, module)
-    block = container_block(inside, None, states, "", module)
+    block = container_block(inside, states, place=False)
     lines = module.blocks.render("Container.tpl.py", "body", block)
     head = Group(f"def {name}(", tuple(("", parameter) for parameter in parameters), "):")
     kind = structure.WORDS[structure.kind(inside.node)]
@@ -355,10 +393,12 @@ def _function(
     return f"{laid_out(head, WIDTH)}\n{indent(body, '    ')}"
 
 
-def _leaf(leaf: Leaf, inside: EmittedContainer, path: str, module: ModuleParts) -> str:
+def _leaf(
+    leaf: Leaf, added: Added, inside: EmittedContainer, path: str, module: ModuleParts
+) -> str:
     used = _used(leaf, module)
     if used.whole:
-        return _whole(leaf, inside, path, used, module)
+        return _whole(leaf, added, inside, path, used, module)
     arguments: structure.Arguments = [("", "node")] if used.takes_node else []
     dropped = len(own_outcomes(leaf)) < len(used.type.outcomes)
     if "outcomes" in used.type.given or (used.type.optional and dropped):
@@ -376,9 +416,9 @@ def _leaf(leaf: Leaf, inside: EmittedContainer, path: str, module: ModuleParts) 
         leaf.outputs if "output_keys" in given else (),
     )
     callbacks = called.value.data if called is not None else None
-    made = structure.made(leaf, call(used.class_name, arguments), callbacks)
-    depth = inside.depth + 1
-    return f"{structure.notes(leaf, depth)}\n{structure.add(leaf, inside.node, made, depth)}"
+    made = call(used.class_name, arguments)
+    add = added.statement(leaf, made, inside, module, callbacks=callbacks)
+    return structure.documentation(added.outer.doc, inside.depth + 1) + add
 
 
 def _defaults(type_: StateType) -> dict[str, object]:
@@ -412,7 +452,6 @@ def _called_first(leaf: Leaf, used: UsedType, module: ModuleParts) -> Variable |
     known = used.type.variables.get(held.name) if held is not None else None
     if held is None or held.value.data is None or known is None or not known.called_first:
         return None
-    module.buffers["defs"][WITH_CALLBACKS] = None
     return held
 
 
@@ -451,7 +490,9 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
             whole="body" in found,
             takes_node=node,
         )
-        if not used.whole:
+        if _is_imported(code, used.class_name, module):
+            module.additions[used.class_name] = None
+        elif not used.whole:
             variables: dict[str, object] = {
                 "class_name": used.class_name,
                 "defined_headers": module.defined_headers,
@@ -463,6 +504,12 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
     module.used[leaf.type] = used
     module.names.named.add(used.class_name)
     return used
+
+
+def _is_imported(template: str, class_name: str, module: ModuleParts) -> bool:
+    """Whether the program imports the class of a built-in state type."""
+    own = module.context.library.own_template(template) is not None
+    return class_name in module.added.classes and not own and not module.standalone
 
 
 def _own_variable(found: Diagnostic, type_: StateType) -> Diagnostic:
@@ -513,7 +560,12 @@ def _class_name(type_: str) -> str:
 
 
 def _whole(
-    leaf: Leaf, inside: EmittedContainer, path: str, used: UsedType, module: ModuleParts
+    leaf: Leaf,
+    added: Added,
+    inside: EmittedContainer,
+    path: str,
+    used: UsedType,
+    module: ModuleParts,
 ) -> str:
     """The code of a state whose template has a block `body`, from the variables of SMACHA."""
     own = module.context.library.own_template(used.template) is not None
@@ -528,7 +580,9 @@ def _whole(
         variables["inputs"] = [key.name for key in leaf.inputs]
     called = _called_first(leaf, used, module)
     callbacks = called.value.data if called is not None else None
-    variables["add"] = adding(leaf, inside.node, inside.depth + 1, callbacks)
+    variables["add"] = adding(
+        lambda made: added.statement(leaf, made, inside, module, callbacks=callbacks, place=not own)
+    )
     try:
         page = module.blocks.page(used.template, variables)
         module.gather(page, leaf)
@@ -536,14 +590,18 @@ def _whole(
         text = module.code(page, "body", leaf)
     except BlockError as error:
         raise BlockError(_unprinted_variable(error.diagnostic, leaf, used.type)) from error
-    notes = structure.notes(leaf, inside.depth + 1)
-    return f"{notes}\n{_adapted(text, leaf, inside, page) if own else text}"
+    if not own:
+        return structure.documentation(added.outer.doc, inside.depth + 1) + text
+    notes = structure.notes(added.outer, inside.depth + 1)
+    return f"{notes}\n{_adapted(text, leaf, inside, page, module)}"
 
 
-def _adapted(text: str, node: Node, inside: EmittedContainer, page: Page) -> str:
+def _adapted(
+    text: str, node: Node, inside: EmittedContainer, page: Page, module: ModuleParts
+) -> str:
     """The text of a template of the user, completed for an Iterator and for caught exceptions."""
     try:
-        return adapted(text, node, inside.node, inside.depth + 1)
+        return adapted(text, node, inside.node, inside.depth + 1, module.additions)
     except OtherContainerError as error:
         raise BlockError(_other_container(error.words, node, inside.node, page)) from error
     except NotAddedError as error:

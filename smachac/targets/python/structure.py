@@ -37,7 +37,8 @@ from smachac.targets.python.formatter import (
 
 OURS = (
     *("smach", "build", "main", "error_as_outcome", "with_callbacks"),
-    *("ends_preempted", "stoppable", "stoppable_again", "withdraw"),
+    *("ends_preempted", "pass_on_each_request", "pass_on_second_request"),
+    *("pass_on_stop_requests", "withdraw", "with_retries", "with_timeout"),
     *("stop_at_signals", "stop_signals", "signals", "sim", "world"),
     *("rospy", "smach_ros", "start_node", "preempt_at_shutdown", "server", "sis"),
 )
@@ -75,10 +76,10 @@ def variable_names() -> Callable[[str, str], str]:
 
 
 def construct(
-    node: Container, variable: str, depth: int, items: Doc | None = None, wrapper: str = ""
+    node: Container, variable: str, depth: int, items: Doc | None = None, note: str = ""
 ) -> str:
-    """The line that makes a container. `items` are those of an Iterator that are not userdata.
-    `wrapper` is the function around the container (stop_requests.py)."""
+    """The statement that makes a container; `note` is a comment at it. `items` are those of an
+    Iterator that are not userdata."""
     arguments: Arguments = [("outcomes=", names(outcome.name for outcome in node.outcomes))]
     match node:
         case Sequence():
@@ -108,9 +109,14 @@ def construct(
             arguments.append(("child_termination_cb=", "lambda outcomes: True"))
     head = f"{variable} = "
     made = call(f"smach.{kind(node)}", arguments)
-    if wrapper:
-        made = call(wrapper, [("", made)])
-    return head + laid_out(made, width(depth), len(head))
+    return head + _with_comment(made, note, width(depth), len(head))
+
+
+def _with_comment(doc: Doc, text: str, width: int, before: int = 0) -> str:
+    """A statement, laid out as by `laid_out`, with a comment on its first line, if there is one."""
+    comment = f"  # {text}" if text else ""
+    first, *rest = laid_out(doc, width, before, len(comment)).split("\n")
+    return "\n".join([f"{first}{comment}", *rest])
 
 
 def kind(node: Container) -> str:
@@ -173,27 +179,35 @@ def initial(node: Container, variable: str) -> list[str]:
     return [f"{variable}.set_initial_state({flat(names([node.initial]))})"]
 
 
-def made(node: Node, state: Doc, callbacks: Data = None) -> Doc:
+def made(node: Node, state: Doc, used: dict[str, None], callbacks: Data = None) -> Doc:
     """The expression for a state, wrapped for `callbacks`, for exceptions that it catches, and for
-    requests to stop that end a time limit, retry or loop."""
+    requests to stop that end a time limit, retry or loop. `used` gets the functions around it."""
     if callbacks is not None:
+        used["with_callbacks"] = None
         state = call("with_callbacks", [("", state), ("", literal(callbacks))])
     if ends_preempted(node):
+        used["ends_preempted"] = None
         state = call("ends_preempted", [("", state)])
     if not node.catches:
         return state
+    used["error_as_outcome"] = None
     return call("error_as_outcome", [("", state), ("", string(node.catches))])
 
 
-def add(node: Node, parent: Container, made: Doc, depth: int) -> str:
-    """The statement that adds a state, made by the expression `made`, to its container."""
+def add(node: Node, parent: Container, made: Doc, depth: int, note: str = "") -> str:
+    """The statement that adds a state, made by the expression `made`, to its container; `note` is a
+    comment at it."""
+    return _with_comment(_add(node, parent, made), note, width(depth))
+
+
+def _add(node: Node, parent: Container, made: Doc) -> Group:
     arguments: Arguments = [("", string(node.name)), ("", made)]
     if isinstance(parent, IteratorNode):
         arguments.append(("loop_outcomes=", names(parent.loop_outcomes)))
         if parent.final_map:
             pairs = ((key, string(to)) for key, to in parent.final_map)
             arguments.append(("final_outcome_map=", mapping(pairs)))
-        return laid_out(call("smach.Iterator.set_contained_state", arguments), width(depth))
+        return call("smach.Iterator.set_contained_state", arguments)
     if not isinstance(parent, Concurrence):
         edges = [
             (edge.outcome, string(edge.target))
@@ -205,7 +219,7 @@ def add(node: Node, parent: Container, made: Doc, depth: int) -> str:
     if node.remaps:
         pairs = ((remap.key, string(remap.to)) for remap in node.remaps)
         arguments.append(("remapping=", mapping(pairs)))
-    return laid_out(call(f"smach.{kind(parent)}.add", arguments), width(depth))
+    return call(f"smach.{kind(parent)}.add", arguments)
 
 
 def _never_taken(node: Node) -> Iterator[Transition]:
@@ -241,8 +255,20 @@ def place(node: Node) -> str:
     return comment(f"{name}:{node.span.line}")
 
 
-def notes(node: Node, depth: int, doc: str | None = None) -> str:
-    """The comment above a state: its place, and its documentation unless `doc` replaces it."""
-    text = node.doc if doc is None else doc
-    lines = [place(node), *(comment_lines(text, width(depth) - 2) if text else ())]
+def notes(node: Node, depth: int) -> str:
+    """The comment above a state that other code than ours adds: its place and documentation."""
+    return _comment([place(node), *_lines(node.doc, depth)])
+
+
+def documentation(doc: str, depth: int) -> str:
+    """The comment above a state, with a line end; empty if it has no documentation."""
+    text = _comment(_lines(doc, depth))
+    return f"{text}\n" if text else ""
+
+
+def _lines(doc: str, depth: int) -> list[str]:
+    return [*comment_lines(doc, width(depth) - 2)] if doc else []
+
+
+def _comment(lines: Iterable[str]) -> str:
     return "\n".join(f"# {line}".rstrip() for line in lines)

@@ -15,7 +15,6 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, NamedTuple
 
-import smachac
 from smachac.diagnostics.diagnostic import Report
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Machine
@@ -27,7 +26,7 @@ from smachac.verify.players.cpp_program import Program
 from smachac.verify.players.cpp_step_program import StepProgram
 from smachac.verify.test_case import Event, Player, TestCase, UnplayableError
 
-HEADERS = Path(smachac.__file__).parent / "runtime" / "cpp"
+HEADERS = Path(__file__).parents[2] / "runtime" / "cpp"
 """The folder of smachac/*.hpp."""
 
 FLAGS = ("-std=c++17", "-O0", "-ffp-contract=off", "-pthread", f"-I{HEADERS}")

@@ -4,6 +4,7 @@ case."""
 from __future__ import annotations
 
 import copy
+import logging
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout, suppress
@@ -14,6 +15,7 @@ from typing import Any
 from smachac.ir.nodes import Machine
 from smachac.runtime.tracing import trace
 from smachac.runtime.tracing.instrument import is_container
+from smachac.runtime.tracing.writer import SECRET, trace_value
 from smachac.targets.python.runner import (
     failure_text,
     hidden,
@@ -101,6 +103,25 @@ def trace_of(machine: Any, name: str, case: TestCase, sources: dict[str, str]) -
     with suppress(Exception):
         machine.execute()
     return events
+
+
+@contextmanager
+def silent(name: str) -> Iterator[None]:
+    """Without the messages of a logger: the errors of a test case are in its trace."""
+    log = logging.getLogger(name)
+    before, log.disabled = log.disabled, True
+    try:
+        yield
+    finally:
+        log.disabled = before
+
+
+def without_secret(event: Event, case: TestCase) -> Event:
+    """An event of a machine on another engine as in a trace: secret values are hidden."""
+    if event["event"] != "write":
+        return event
+    is_secret = event["key"] in case.secret.get(event["path"], ())
+    return {**event, "value": SECRET if is_secret else trace_value(event["value"])}
 
 
 def prepared(machine: Any, name: str, case: TestCase, strict: trace.StrictScript) -> Any:

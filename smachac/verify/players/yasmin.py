@@ -7,7 +7,6 @@ containers are those of YASMIN. The modules are loaded once; each trace builds t
 from __future__ import annotations
 
 import copy
-import logging
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
@@ -18,11 +17,10 @@ from typing import Any
 
 from smachac.ir.nodes import Machine
 from smachac.runtime.tracing import trace
-from smachac.runtime.tracing.writer import SECRET, trace_value
 from smachac.targets.python.runner import hidden, loaded, quiet
 from smachac.targets.runtime_files import runtime_files
 from smachac.targets.yasmin import RUNTIME
-from smachac.verify.players.python import prepared, unplayable_errors
+from smachac.verify.players.python import prepared, silent, unplayable_errors, without_secret
 from smachac.verify.players.ros_stand_ins import built, ros_stand_ins
 from smachac.verify.python_values import ITEMS
 from smachac.verify.test_case import Event, Player, TestCase, UnplayableError, record_read
@@ -50,7 +48,7 @@ def player(files: Mapping[str, str], machine: Machine, *, folders: Sequence[Path
             ros_stand_ins("\n".join(files.values()), machine),
             modules(files, *folders) as module,
             quiet(module.smach_program.smach, hidden),
-            _silent("yasmin"),
+            silent("yasmin"),
         ):
             for case in cases:
                 yield _trace(module, machine.root.name, case)
@@ -73,17 +71,6 @@ def modules(files: Mapping[str, str], *folders: Path) -> Iterator[Any]:
         yield sys.modules[names[-1]]
 
 
-@contextmanager
-def _silent(name: str) -> Iterator[None]:
-    """Without the messages of a logger: the errors of a test case are in its trace."""
-    log = logging.getLogger(name)
-    before, log.disabled = log.disabled, True
-    try:
-        yield
-    finally:
-        log.disabled = before
-
-
 def _trace(module: Any, name: str, case: TestCase) -> list[Event]:
     """The trace of one run; an error that ends the run is an event of it."""
     events: list[Event] = []
@@ -98,10 +85,7 @@ def _trace(module: Any, name: str, case: TestCase) -> list[Event]:
     states.request_preempt = run.request_preempt  # steps request a stop of this machine
 
     def observe(event: Event) -> None:
-        if event["event"] == "write":
-            is_secret = event["key"] in case.secret.get(event["path"], ())
-            event["value"] = SECRET if is_secret else trace_value(event["value"])
-        events.append(event)
+        events.append(without_secret(event, case))
 
     run.observe(observe)
     if case.stopped:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from smachac.driver.python_machines import PythonProject, analyses_by_name
 from smachac.frontend.files import Disk
-from smachac.python_machines import PythonProject, analyses_by_name
 
 HEAD = """\
 import smach

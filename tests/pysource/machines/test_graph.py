@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
+from smachac.driver.python_machines import PythonProject
 from smachac.frontend.files import Disk
 from smachac.ir.nodes import Concurrence, Iterator
-from smachac.python_machines import PythonProject
 
 HEAD = """\
 import smach

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from smachac.driver.python_machines import PythonFile, PythonProject
 from smachac.frontend.files import Disk
 from smachac.pysource.machines import evaluator
-from smachac.python_machines import PythonFile, PythonProject
 from tests.support.hostile_python import HOSTILE
 
 STEPS = 20_000

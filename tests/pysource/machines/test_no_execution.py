@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from smachac.driver.python_machines import PythonProject
 from smachac.frontend.files import Disk
-from smachac.python_machines import PythonProject
 
 CODE = {
     "import": "{mark}",

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from smachac.commands.cli import main
-from smachac.python_cache import cache_folder
-from smachac.python_machines import PythonProject
+from smachac.driver.python_cache import cache_folder
+from smachac.driver.python_machines import PythonProject
 
 MACHINE = """\
 import smach

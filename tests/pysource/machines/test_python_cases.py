@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pytest
 
+from smachac.driver.python_machines import PythonProject
 from smachac.frontend.files import Disk
 from smachac.ir.nodes import Concurrence, Container, Node
 from smachac.pysource.machines.graph import Graph
-from smachac.python_machines import PythonProject
 from smachac.report.coverage import coverage_lines
 from smachac.report.text import render_text
 from tests.support.golden import compare_file

@@ -1,10 +1,7 @@
 # Made by smachac 0.1.0 from main.yml (sha256 36ce5025c9f6b2d3).
 """The state machine `sm`."""
 
-import os
-import signal
-import socket
-import threading
+from smachac.runtime import signals
 
 try:
     import smach
@@ -41,18 +38,14 @@ class ScriptedState(smach.State):
 class ConditionalOutcomeState(smach.State):
     """Ends with the first outcome whose condition is true, otherwise the default."""
 
-    def __init__(
-        self, outcomes, callbacks, default_outcome, input_keys=(), output_keys=()
-    ):
+    def __init__(self, outcomes, callbacks, default_outcome, input_keys=(), output_keys=()):
         super().__init__(
             outcomes=outcomes,
             input_keys=list(input_keys),
             output_keys=list(output_keys),
         )
         self.writes_outcome = "outcome" in output_keys
-        self.conditions = [
-            (name, callbacks[name]) for name in outcomes if name in callbacks
-        ]
+        self.conditions = [(name, callbacks[name]) for name in outcomes if name in callbacks]
         self.default_outcome = default_outcome
 
     def execute(self, userdata):
@@ -65,16 +58,13 @@ class ConditionalOutcomeState(smach.State):
 
 def build():
     """Build the state machine `sm`."""
-    # main.yml:2
-    sm = smach.StateMachine(outcomes=["done", "failed"])
+    sm = smach.StateMachine(outcomes=["done", "failed"])  # main.yml:2
     sm.userdata.both = [1.0, 2.0]
     sm.userdata.way = "/left"
     with sm:
-        # main.yml:10
-        smach.StateMachine.add("CALL", build_sub(), transitions={"done": "JUDGE"})
+        smach.StateMachine.add("CALL", build_sub(), transitions={"done": "JUDGE"})  # main.yml:10
 
-        # main.yml:14
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:14
             "JUDGE",
             ConditionalOutcomeState(
                 outcomes=["large", "small", "tiny"],
@@ -91,9 +81,8 @@ def build_sub():
     """Build the state machine of `sub.yml`."""
     sm_call = smach.StateMachine(outcomes=["done"])
     with sm_call:
-        # sub.yml:6
         # at2
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # sub.yml:6
             "SAY",
             ScriptedState(outcomes=["done"], steps=[{"outcome": "done"}]),
             transitions={"done": "done"},
@@ -101,50 +90,15 @@ def build_sub():
     return sm_call
 
 
-stop_signals: list[int] = []
-
-
-def stop_at_signals(stop):
-    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
-
-    A thread reads the signals from a socket: Python runs no signal handler while the main
-    thread is blocked.
-    """
-    read, write = socket.socketpair()
-    write.setblocking(False)
-    signal.set_wakeup_fd(write.detach())
-    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
-    for number in handled:
-        signal.signal(number, lambda number, frame: stop_signals.append(number))
-
-    terminals = [stream for stream in range(3) if os.isatty(stream)]
-
-    def wait():
-        is_stopping = False
-        while True:
-            number = read.recv(1)[0]
-            if number in handled and is_stopping:
-                os._exit(128 + number)
-            if number in handled:
-                is_stopping = True
-                for stream in terminals:
-                    if not os.isatty(stream):  # it was closed: output to it is an error
-                        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
-                threading.Thread(target=stop, daemon=False).start()
-
-    threading.Thread(target=wait, daemon=True).start()
-
-
 def main():
     """Run the state machine once and return its outcome."""
     sm = build()
     if __name__ == "__main__":
-        stop_at_signals(sm.request_preempt)
+        signals.stop_at_signals(sm)
     return sm.execute()
 
 
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

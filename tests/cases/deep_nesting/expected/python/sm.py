@@ -1,10 +1,7 @@
 # Made by smachac 0.1.0 from main.yml (sha256 902e49a7a704b304).
 """The state machine `sm`."""
 
-import os
-import signal
-import socket
-import threading
+from smachac.runtime import signals
 
 try:
     import smach
@@ -40,11 +37,9 @@ class ScriptedState(smach.State):
 
 def build():
     """Build the state machine `sm`."""
-    # main.yml:2
-    sm = smach.StateMachine(outcomes=["done"])
+    sm = smach.StateMachine(outcomes=["done"])  # main.yml:2
     with sm:
-        # main.yml:6
-        smach.StateMachine.add("C0", build_c0(), transitions={"done": "done"})
+        smach.StateMachine.add("C0", build_c0(), transitions={"done": "done"})  # main.yml:6
     return sm
 
 
@@ -52,14 +47,13 @@ def build_c0():
     """Build the state machine `C0`."""
     sm_c0 = smach.StateMachine(outcomes=["done"])
     with sm_c0:
-        # main.yml:10
-        sm_c1 = smach.StateMachine(outcomes=["done"])
+        sm_c1 = smach.StateMachine(outcomes=["done"])  # main.yml:10
         with sm_c1:
-            # main.yml:14
-            sm_c2 = smach.StateMachine(outcomes=["done"])
+            sm_c2 = smach.StateMachine(outcomes=["done"])  # main.yml:14
             with sm_c2:
-                # main.yml:18
-                smach.StateMachine.add("C3", build_c3(), transitions={"done": "done"})
+                smach.StateMachine.add(  # main.yml:18
+                    "C3", build_c3(), transitions={"done": "done"}
+                )
 
             smach.StateMachine.add("C2", sm_c2, transitions={"done": "done"})
 
@@ -71,14 +65,13 @@ def build_c3():
     """Build the state machine `C3`."""
     sm_c3 = smach.StateMachine(outcomes=["done"])
     with sm_c3:
-        # main.yml:22
-        sm_c4 = smach.StateMachine(outcomes=["done"])
+        sm_c4 = smach.StateMachine(outcomes=["done"])  # main.yml:22
         with sm_c4:
-            # main.yml:26
-            sm_c5 = smach.StateMachine(outcomes=["done"])
+            sm_c5 = smach.StateMachine(outcomes=["done"])  # main.yml:26
             with sm_c5:
-                # main.yml:30
-                smach.StateMachine.add("C6", build_c6(), transitions={"done": "done"})
+                smach.StateMachine.add(  # main.yml:30
+                    "C6", build_c6(), transitions={"done": "done"}
+                )
 
             smach.StateMachine.add("C5", sm_c5, transitions={"done": "done"})
 
@@ -90,14 +83,13 @@ def build_c6():
     """Build the state machine `C6`."""
     sm_c6 = smach.StateMachine(outcomes=["done"])
     with sm_c6:
-        # main.yml:34
-        sm_c7 = smach.StateMachine(outcomes=["done"])
+        sm_c7 = smach.StateMachine(outcomes=["done"])  # main.yml:34
         with sm_c7:
-            # main.yml:38
-            sm_c8 = smach.StateMachine(outcomes=["done"])
+            sm_c8 = smach.StateMachine(outcomes=["done"])  # main.yml:38
             with sm_c8:
-                # main.yml:42
-                smach.StateMachine.add("C9", build_c9(), transitions={"done": "done"})
+                smach.StateMachine.add(  # main.yml:42
+                    "C9", build_c9(), transitions={"done": "done"}
+                )
 
             smach.StateMachine.add("C8", sm_c8, transitions={"done": "done"})
 
@@ -109,14 +101,13 @@ def build_c9():
     """Build the state machine `C9`."""
     sm_c9 = smach.StateMachine(outcomes=["done"])
     with sm_c9:
-        # main.yml:46
-        sm_c10 = smach.StateMachine(outcomes=["done"])
+        sm_c10 = smach.StateMachine(outcomes=["done"])  # main.yml:46
         with sm_c10:
-            # main.yml:50
-            sm_c11 = smach.StateMachine(outcomes=["done"])
+            sm_c11 = smach.StateMachine(outcomes=["done"])  # main.yml:50
             with sm_c11:
-                # main.yml:54
-                smach.StateMachine.add("C12", build_c12(), transitions={"done": "done"})
+                smach.StateMachine.add(  # main.yml:54
+                    "C12", build_c12(), transitions={"done": "done"}
+                )
 
             smach.StateMachine.add("C11", sm_c11, transitions={"done": "done"})
 
@@ -128,14 +119,13 @@ def build_c12():
     """Build the state machine `C12`."""
     sm_c12 = smach.StateMachine(outcomes=["done"])
     with sm_c12:
-        # main.yml:58
-        sm_c13 = smach.StateMachine(outcomes=["done"])
+        sm_c13 = smach.StateMachine(outcomes=["done"])  # main.yml:58
         with sm_c13:
-            # main.yml:62
-            sm_c14 = smach.StateMachine(outcomes=["done"])
+            sm_c14 = smach.StateMachine(outcomes=["done"])  # main.yml:62
             with sm_c14:
-                # main.yml:66
-                smach.StateMachine.add("C15", build_c15(), transitions={"done": "done"})
+                smach.StateMachine.add(  # main.yml:66
+                    "C15", build_c15(), transitions={"done": "done"}
+                )
 
             smach.StateMachine.add("C14", sm_c14, transitions={"done": "done"})
 
@@ -147,14 +137,13 @@ def build_c15():
     """Build the state machine `C15`."""
     sm_c15 = smach.StateMachine(outcomes=["done"])
     with sm_c15:
-        # main.yml:70
-        sm_c16 = smach.StateMachine(outcomes=["done"])
+        sm_c16 = smach.StateMachine(outcomes=["done"])  # main.yml:70
         with sm_c16:
-            # main.yml:74
-            sm_c17 = smach.StateMachine(outcomes=["done"])
+            sm_c17 = smach.StateMachine(outcomes=["done"])  # main.yml:74
             with sm_c17:
-                # main.yml:78
-                smach.StateMachine.add("C18", build_c18(), transitions={"done": "done"})
+                smach.StateMachine.add(  # main.yml:78
+                    "C18", build_c18(), transitions={"done": "done"}
+                )
 
             smach.StateMachine.add("C17", sm_c17, transitions={"done": "done"})
 
@@ -166,14 +155,13 @@ def build_c18():
     """Build the state machine `C18`."""
     sm_c18 = smach.StateMachine(outcomes=["done"])
     with sm_c18:
-        # main.yml:82
-        sm_c19 = smach.StateMachine(outcomes=["done"])
+        sm_c19 = smach.StateMachine(outcomes=["done"])  # main.yml:82
         with sm_c19:
-            # main.yml:86
-            sm_c20 = smach.StateMachine(outcomes=["done"])
+            sm_c20 = smach.StateMachine(outcomes=["done"])  # main.yml:86
             with sm_c20:
-                # main.yml:90
-                smach.StateMachine.add("C21", build_c21(), transitions={"done": "done"})
+                smach.StateMachine.add(  # main.yml:90
+                    "C21", build_c21(), transitions={"done": "done"}
+                )
 
             smach.StateMachine.add("C20", sm_c20, transitions={"done": "done"})
 
@@ -185,14 +173,13 @@ def build_c21():
     """Build the state machine `C21`."""
     sm_c21 = smach.StateMachine(outcomes=["done"])
     with sm_c21:
-        # main.yml:94
-        sm_c22 = smach.StateMachine(outcomes=["done"])
+        sm_c22 = smach.StateMachine(outcomes=["done"])  # main.yml:94
         with sm_c22:
-            # main.yml:98
-            sm_c23 = smach.StateMachine(outcomes=["done"])
+            sm_c23 = smach.StateMachine(outcomes=["done"])  # main.yml:98
             with sm_c23:
-                # main.yml:102
-                smach.StateMachine.add("C24", build_c24(), transitions={"done": "done"})
+                smach.StateMachine.add(  # main.yml:102
+                    "C24", build_c24(), transitions={"done": "done"}
+                )
 
             smach.StateMachine.add("C23", sm_c23, transitions={"done": "done"})
 
@@ -204,14 +191,13 @@ def build_c24():
     """Build the state machine `C24`."""
     sm_c24 = smach.StateMachine(outcomes=["done"])
     with sm_c24:
-        # main.yml:106
-        sm_c25 = smach.StateMachine(outcomes=["done"])
+        sm_c25 = smach.StateMachine(outcomes=["done"])  # main.yml:106
         with sm_c25:
-            # main.yml:110
-            sm_c26 = smach.StateMachine(outcomes=["done"])
+            sm_c26 = smach.StateMachine(outcomes=["done"])  # main.yml:110
             with sm_c26:
-                # main.yml:114
-                smach.StateMachine.add("C27", build_c27(), transitions={"done": "done"})
+                smach.StateMachine.add(  # main.yml:114
+                    "C27", build_c27(), transitions={"done": "done"}
+                )
 
             smach.StateMachine.add("C26", sm_c26, transitions={"done": "done"})
 
@@ -223,17 +209,12 @@ def build_c27():
     """Build the state machine `C27`."""
     sm_c27 = smach.StateMachine(outcomes=["done"])
     with sm_c27:
-        # main.yml:118
-        sm_c28 = smach.StateMachine(outcomes=["done"])
+        sm_c28 = smach.StateMachine(outcomes=["done"])  # main.yml:118
         with sm_c28:
-            # main.yml:122
-            sm_c29 = smach.StateMachine(outcomes=["done"])
+            sm_c29 = smach.StateMachine(outcomes=["done"])  # main.yml:122
             with sm_c29:
-                # main.yml:126
-                smach.StateMachine.add(
-                    "LEAF",
-                    ScriptedState(outcomes=["done"]),
-                    transitions={"done": "done"},
+                smach.StateMachine.add(  # main.yml:126
+                    "LEAF", ScriptedState(outcomes=["done"]), transitions={"done": "done"}
                 )
 
             smach.StateMachine.add("C29", sm_c29, transitions={"done": "done"})
@@ -242,50 +223,15 @@ def build_c27():
     return sm_c27
 
 
-stop_signals: list[int] = []
-
-
-def stop_at_signals(stop):
-    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
-
-    A thread reads the signals from a socket: Python runs no signal handler while the main
-    thread is blocked.
-    """
-    read, write = socket.socketpair()
-    write.setblocking(False)
-    signal.set_wakeup_fd(write.detach())
-    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
-    for number in handled:
-        signal.signal(number, lambda number, frame: stop_signals.append(number))
-
-    terminals = [stream for stream in range(3) if os.isatty(stream)]
-
-    def wait():
-        is_stopping = False
-        while True:
-            number = read.recv(1)[0]
-            if number in handled and is_stopping:
-                os._exit(128 + number)
-            if number in handled:
-                is_stopping = True
-                for stream in terminals:
-                    if not os.isatty(stream):  # it was closed: output to it is an error
-                        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
-                threading.Thread(target=stop, daemon=False).start()
-
-    threading.Thread(target=wait, daemon=True).start()
-
-
 def main():
     """Run the state machine once and return its outcome."""
     sm = build()
     if __name__ == "__main__":
-        stop_at_signals(sm.request_preempt)
+        signals.stop_at_signals(sm)
     return sm.execute()
 
 
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

@@ -2,6 +2,7 @@
 """The state machine `sm`."""
 
 from smachac import sim
+from smachac.runtime.additions import pass_on_stop_requests
 
 try:
     import smach
@@ -24,82 +25,6 @@ def optional(userdata, key):
     if key in userdata:
         return userdata[key]
     return None
-
-
-def withdraw(state):
-    """Take back the unanswered stop requests of a state and of the states inside."""
-    if state.preempt_requested():
-        state.recall_preempt()
-        for child in getattr(state, "get_children", dict)().values():
-            withdraw(child)
-
-
-def stoppable(container):
-    """Let a container pass on every stop request, also an early one and a second one."""
-    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
-        return container
-    run, request = container.execute, container.request_preempt
-    children = container.get_children
-    concurrent = isinstance(container, smach.Concurrence)
-    container.busy = container.asked = False
-
-    def pass_on():
-        for label in container.get_active_states() or list(children()):
-            child = children().get(label)
-            again = hasattr(child, "get_children")
-            if child and (again or not child.preempt_requested()):
-                child.request_preempt()
-
-    def request_preempt():
-        if not container.busy:
-            return request()
-        container.asked = True
-        if not concurrent:
-            smach.State.request_preempt(container)
-        pass_on()
-
-    def execute(*userdata):
-        container.busy, container.asked = True, container.preempt_requested()
-        if container.asked:
-            pass_on()
-        if concurrent:  # with its own request, SMACH for ROS 1 ends as preempted
-            container.service_preempt()
-        unanswered = True
-        try:
-            outcome = run(*userdata)
-            unanswered = any(child.preempt_requested() for child in children().values())
-            return outcome
-        finally:
-            container.busy = False
-            for child in children().values():
-                withdraw(child)
-            if concurrent and container.asked and unanswered:
-                request()
-
-    if concurrent and container._child_termination_cb:
-        ends = container._child_termination_cb
-
-        def ends_others(outcomes):
-            return not container.asked and ends(outcomes)
-
-        container._child_termination_cb = ends_others
-    container.execute, container.request_preempt = execute, request_preempt
-    return container
-
-
-def stoppable_again(machine):
-    """Let a machine pass on a second stop request while the same container in it runs."""
-    request, children = machine.request_preempt, machine.get_children
-
-    def request_preempt():
-        again = machine.preempt_requested() and getattr(smach, "compat", True)
-        request()
-        for label in machine.get_active_states() if again else ():
-            if hasattr(children().get(label), "get_children"):
-                children()[label].request_preempt()
-
-    machine.request_preempt = request_preempt
-    return machine
 
 
 class PoseToJointPositionsState(smach.State):
@@ -197,8 +122,7 @@ class ScriptedState(smach.State):
 
 def build():
     """Build the state machine `sm`."""
-    # main.yml:2
-    sm = stoppable_again(smach.StateMachine(outcomes=["done", "failed"]))
+    sm = smach.StateMachine(outcomes=["done", "failed"])  # main.yml:2
     sm.userdata.home = [0, -0.785, 0, -2.356, 0, 1.571, 0.785]
     sm.userdata.poses = [
         [[0.5, 0.0, 0.1], [0.0, 0.0, 0.0, 1.0]],
@@ -210,34 +134,27 @@ def build():
     sm.userdata.word_2 = 5
     sm.userdata.depth = 1
     with sm:
-        # main.yml:14
-        sm_each = stoppable(
-            smach.Iterator(
-                outcomes=["done", "failed"],
-                it=lambda: sm_each.userdata["poses"],
-                it_label="pose",
-                exhausted_outcome="done",
-                input_keys=["poses"],
-                output_keys=[],
-            ),
+        sm_each = smach.Iterator(  # main.yml:14
+            outcomes=["done", "failed"],
+            it=lambda: sm_each.userdata["poses"],
+            it_label="pose",
+            exhausted_outcome="done",
+            input_keys=["poses"],
+            output_keys=[],
         )
         with sm_each:
-            # main.yml:23
-            sm_go = smach.StateMachine(
-                outcomes=["reached", "failed"],
-                input_keys=["pose"],
+            sm_go = smach.StateMachine(  # main.yml:23
+                outcomes=["reached", "failed"], input_keys=["pose"]
             )
             with sm_go:
-                # main.yml:28
-                smach.StateMachine.add(
+                smach.StateMachine.add(  # main.yml:28
                     "PLAN",
                     PoseToJointPositionsState(),
                     transitions={"succeeded": "MOVE", "aborted": "failed"},
                     remapping={"joints": "goal"},
                 )
 
-                # main.yml:32
-                smach.StateMachine.add(
+                smach.StateMachine.add(  # main.yml:32
                     "MOVE",
                     MoveToJointPositionsState(),
                     transitions={
@@ -250,14 +167,9 @@ def build():
 
             smach.Iterator.set_contained_state("GO", sm_go, loop_outcomes=["reached"])
 
-        smach.StateMachine.add(
-            "EACH",
-            sm_each,
-            transitions={"done": "COUNT", "failed": "failed"},
-        )
+        smach.StateMachine.add("EACH", sm_each, transitions={"done": "COUNT", "failed": "failed"})
 
-        # main.yml:37
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:37
             "COUNT",
             CallbacksState(
                 callbacks={
@@ -274,8 +186,7 @@ def build():
             transitions={"succeeded": "USE"},
         )
 
-        # main.yml:49
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:49
             "USE",
             ScriptedState(
                 outcomes=["done"],
@@ -296,24 +207,19 @@ def build():
             transitions={"done": "AGAIN"},
         )
 
-        # main.yml:65
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:65
             "AGAIN",
             ScriptedState(outcomes=["done"], input_keys=["word", "word_2", "tries"]),
             transitions={"done": "HOME"},
         )
 
-        # main.yml:70
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:70
             "HOME",
             MoveToJointPositionsState(speed=1, limb=None),
-            transitions={
-                "succeeded": "done",
-                "aborted": "failed",
-                "preempted": "failed",
-            },
+            transitions={"succeeded": "done", "aborted": "failed", "preempted": "failed"},
             remapping={"positions": "home"},
         )
+    pass_on_stop_requests(sm)
     return sm
 
 

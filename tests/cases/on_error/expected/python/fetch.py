@@ -1,139 +1,18 @@
 # Made by smachac 0.1.0 from main.yml (sha256 0eed65aba39ca33b).
 """The state machine `fetch`."""
 
-import os
-import signal
-import socket
-import threading
-import traceback
+from smachac.runtime import signals
+from smachac.runtime.additions import (
+    SleepState,
+    error_as_outcome,
+    pass_on_stop_requests,
+    with_retries,
+)
 
 try:
     import smach
 except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
-
-
-def withdraw(state):
-    """Take back the unanswered stop requests of a state and of the states inside."""
-    if state.preempt_requested():
-        state.recall_preempt()
-        for child in getattr(state, "get_children", dict)().values():
-            withdraw(child)
-
-
-def stoppable(container):
-    """Let a container pass on every stop request, also an early one and a second one."""
-    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
-        return container
-    run, request = container.execute, container.request_preempt
-    children = container.get_children
-    concurrent = isinstance(container, smach.Concurrence)
-    container.busy = container.asked = False
-
-    def pass_on():
-        for label in container.get_active_states() or list(children()):
-            child = children().get(label)
-            again = hasattr(child, "get_children")
-            if child and (again or not child.preempt_requested()):
-                child.request_preempt()
-
-    def request_preempt():
-        if not container.busy:
-            return request()
-        container.asked = True
-        if not concurrent:
-            smach.State.request_preempt(container)
-        pass_on()
-
-    def execute(*userdata):
-        container.busy, container.asked = True, container.preempt_requested()
-        if container.asked:
-            pass_on()
-        if concurrent:  # with its own request, SMACH for ROS 1 ends as preempted
-            container.service_preempt()
-        unanswered = True
-        try:
-            outcome = run(*userdata)
-            unanswered = any(child.preempt_requested() for child in children().values())
-            return outcome
-        finally:
-            container.busy = False
-            for child in children().values():
-                withdraw(child)
-            if concurrent and container.asked and unanswered:
-                request()
-
-    if concurrent and container._child_termination_cb:
-        ends = container._child_termination_cb
-
-        def ends_others(outcomes):
-            return not container.asked and ends(outcomes)
-
-        container._child_termination_cb = ends_others
-    container.execute, container.request_preempt = execute, request_preempt
-    return container
-
-
-def stoppable_again(machine):
-    """Let a machine pass on a second stop request while the same container in it runs."""
-    request, children = machine.request_preempt, machine.get_children
-
-    def request_preempt():
-        again = machine.preempt_requested() and getattr(smach, "compat", True)
-        request()
-        for label in machine.get_active_states() if again else ():
-            if hasattr(children().get(label), "get_children"):
-                children()[label].request_preempt()
-
-    machine.request_preempt = request_preempt
-    return machine
-
-
-def ends_preempted(container):
-    """Let a time limit or loop end as preempted after a request to stop."""
-    run, request = container.execute, container.request_preempt
-    recall = container.recall_preempt
-
-    def request_preempt():
-        container.stopped = True
-        request()
-
-    def recall_preempt():
-        container.stopped = False
-        recall()
-
-    def execute(*userdata):
-        container.stopped = container.stopped or container.preempt_requested()
-        try:
-            outcome = run(*userdata)
-            if container.stopped:
-                container.service_preempt()
-                outcome = "preempted"
-            return outcome
-        finally:
-            container.stopped = False
-
-    container.execute, container.stopped = execute, False
-    container.request_preempt = request_preempt
-    container.recall_preempt = recall_preempt
-    return container
-
-
-def error_as_outcome(state, outcome):
-    """Let a state end with an outcome where it would raise an exception, which is logged."""
-
-    def attempt(*userdata):
-        try:
-            return state.attempted(*userdata)
-        except Exception as error:
-            smach.logerr(traceback.format_exc(chain=False))
-            state.caught = error
-            return outcome
-
-    state.attempted, state.execute = state.execute, attempt
-    state.caught = None
-    state.register_outcomes([outcome])
-    return state
 
 
 class ScriptedState(smach.State):
@@ -188,18 +67,14 @@ class CallbacksState(smach.State):
 class ConditionalOutcomeState(smach.State):
     """Ends with the first outcome whose condition is true, otherwise the default."""
 
-    def __init__(
-        self, outcomes, callbacks, default_outcome, input_keys=(), output_keys=()
-    ):
+    def __init__(self, outcomes, callbacks, default_outcome, input_keys=(), output_keys=()):
         super().__init__(
             outcomes=outcomes,
             input_keys=list(input_keys),
             output_keys=list(output_keys),
         )
         self.writes_outcome = "outcome" in output_keys
-        self.conditions = [
-            (name, callbacks[name]) for name in outcomes if name in callbacks
-        ]
+        self.conditions = [(name, callbacks[name]) for name in outcomes if name in callbacks]
         self.default_outcome = default_outcome
 
     def execute(self, userdata):
@@ -210,56 +85,23 @@ class ConditionalOutcomeState(smach.State):
         return outcome
 
 
-class SleepState(smach.State):
-    """Waits for `time` seconds: a number, or a function of the userdata.
-
-    A preempt request ends the wait.
-    """
-
-    def __init__(self, time, input_keys=(), outcomes=("succeeded", "preempted")):
-        super().__init__(
-            outcomes=list(outcomes),
-            input_keys=list(input_keys),
-        )
-        self.time = time
-        self.end_of_wait = threading.Event()
-
-    def request_preempt(self):
-        super().request_preempt()
-        self.end_of_wait.set()
-
-    def execute(self, userdata):
-        self.end_of_wait.wait(self.time(userdata) if callable(self.time) else self.time)
-        self.end_of_wait.clear()
-        if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
-            self.service_preempt()
-            return "preempted"
-        return "succeeded"
-
-
 def build():
     """Build the state machine `fetch`."""
-    # main.yml:2
-    fetch = stoppable_again(smach.StateMachine(outcomes=["succeeded", "aborted"]))
+    fetch = smach.StateMachine(outcomes=["succeeded", "aborted"])  # main.yml:2
     fetch.userdata.n = 0
     fetch.userdata.parts = [1, 2]
     with fetch:
-        # main.yml:7
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:7
             "FIND",
             error_as_outcome(ScriptedState(outcomes=["found", "nothing"]), "error"),
             transitions={"found": "PICK", "nothing": "aborted", "error": "aborted"},
         )
 
-        # main.yml:11
-        sm_pick = smach.StateMachine(
-            outcomes=["succeeded", "error"],
-            input_keys=["n"],
-            output_keys=["width"],
+        sm_pick = smach.StateMachine(  # main.yml:11
+            outcomes=["succeeded", "error"], input_keys=["n"], output_keys=["width"]
         )
         with sm_pick:
-            # main.yml:18
-            smach.StateMachine.add(
+            smach.StateMachine.add(  # main.yml:18
                 "DIVIDE",
                 CallbacksState(
                     callbacks={"width": lambda ud: 1 / ud.n},
@@ -275,50 +117,30 @@ def build():
             transitions={"succeeded": "OWN", "error": "LET_GO"},
         )
 
-        # main.yml:24
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:24
             "OWN",
-            error_as_outcome(
-                ScriptedState(outcomes=["succeeded", "error"]),
-                "caught_error",
-            ),
-            transitions={
-                "succeeded": "CARRY",
-                "error": "aborted",
-                "caught_error": "LET_GO",
-            },
+            error_as_outcome(ScriptedState(outcomes=["succeeded", "error"]), "caught_error"),
+            transitions={"succeeded": "CARRY", "error": "aborted", "caught_error": "LET_GO"},
         )
 
-        # main.yml:28
-        sm_carry = stoppable(
-            smach.Iterator(
-                outcomes=["succeeded", "exhausted", "preempted", "error"],
-                it=[1, 2, 3],
-                it_label="attempt",
-                exhausted_outcome="exhausted",
-                input_keys=["n"],
-                output_keys=["width"],
-            ),
-        )
-        with sm_carry:
-            # main.yml:28
-            smach.Iterator.set_contained_state(
-                "CARRY",
-                error_as_outcome(
-                    CallbacksState(
-                        callbacks={"width": lambda ud: 1 / ud.n},
-                        input_keys=["n"],
-                        output_keys=["width"],
-                    ),
-                    "error",
-                ),
-                loop_outcomes=["error"],
-                final_outcome_map={"error": "preempted"},
-            )
-
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:28
             "CARRY",
-            error_as_outcome(ends_preempted(sm_carry), "error"),
+            error_as_outcome(
+                with_retries(
+                    error_as_outcome(
+                        CallbacksState(
+                            callbacks={"width": lambda ud: 1 / ud.n},
+                            input_keys=["n"],
+                            output_keys=["width"],
+                        ),
+                        "error",
+                    ),
+                    3,
+                    on=["error"],
+                    label="CARRY",
+                ),
+                "error",
+            ),
             transitions={
                 "succeeded": "BOTH",
                 "exhausted": "BOTH",
@@ -327,18 +149,14 @@ def build():
             },
         )
 
-        # main.yml:35
-        sm_both = stoppable(
-            smach.Concurrence(
-                outcomes=["succeeded", "failed", "error"],
-                default_outcome="succeeded",
-                input_keys=["n"],
-                outcome_map={"failed": {"LEFT": "error"}},
-            ),
+        sm_both = smach.Concurrence(  # main.yml:35
+            outcomes=["succeeded", "failed", "error"],
+            default_outcome="succeeded",
+            input_keys=["n"],
+            outcome_map={"failed": {"LEFT": "error"}},
         )
         with sm_both:
-            # main.yml:43
-            smach.Concurrence.add(
+            smach.Concurrence.add(  # main.yml:43
                 "LEFT",
                 error_as_outcome(
                     ConditionalOutcomeState(
@@ -351,8 +169,7 @@ def build():
                 ),
             )
 
-            # main.yml:49
-            smach.Concurrence.add("RIGHT", SleepState(time=0.01))
+            smach.Concurrence.add("RIGHT", SleepState(time=0.01))  # main.yml:49
 
         smach.StateMachine.add(
             "BOTH",
@@ -360,20 +177,16 @@ def build():
             transitions={"succeeded": "EACH", "failed": "aborted", "error": "LET_GO"},
         )
 
-        # main.yml:50
-        sm_each = stoppable(
-            smach.Iterator(
-                outcomes=["succeeded", "error"],
-                it=lambda: sm_each.userdata["parts"],
-                it_label="part",
-                exhausted_outcome="succeeded",
-                input_keys=["parts"],
-                output_keys=[],
-            ),
+        sm_each = smach.Iterator(  # main.yml:50
+            outcomes=["succeeded", "error"],
+            it=lambda: sm_each.userdata["parts"],
+            it_label="part",
+            exhausted_outcome="succeeded",
+            input_keys=["parts"],
+            output_keys=[],
         )
         with sm_each:
-            # main.yml:60
-            smach.Iterator.set_contained_state(
+            smach.Iterator.set_contained_state(  # main.yml:60
                 "HALVE",
                 error_as_outcome(
                     CallbacksState(
@@ -392,59 +205,24 @@ def build():
             transitions={"succeeded": "succeeded", "error": "LET_GO"},
         )
 
-        # main.yml:65
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:65
             "LET_GO",
             CallbacksState(callbacks={"n": lambda ud: 1}, output_keys=["n"]),
             transitions={"succeeded": "OWN"},
         )
+    pass_on_stop_requests(fetch)
     return fetch
-
-
-stop_signals: list[int] = []
-
-
-def stop_at_signals(stop):
-    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
-
-    A thread reads the signals from a socket: Python runs no signal handler while the main
-    thread is blocked.
-    """
-    read, write = socket.socketpair()
-    write.setblocking(False)
-    signal.set_wakeup_fd(write.detach())
-    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
-    for number in handled:
-        signal.signal(number, lambda number, frame: stop_signals.append(number))
-
-    terminals = [stream for stream in range(3) if os.isatty(stream)]
-
-    def wait():
-        is_stopping = False
-        while True:
-            number = read.recv(1)[0]
-            if number in handled and is_stopping:
-                os._exit(128 + number)
-            if number in handled:
-                is_stopping = True
-                for stream in terminals:
-                    if not os.isatty(stream):  # it was closed: output to it is an error
-                        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
-                threading.Thread(target=stop, daemon=False).start()
-
-    threading.Thread(target=wait, daemon=True).start()
 
 
 def main():
     """Run the state machine once and return its outcome."""
     fetch = build()
     if __name__ == "__main__":
-        stop_at_signals(fetch.request_preempt)
+        signals.stop_at_signals(fetch)
     return fetch.execute()
 
 
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

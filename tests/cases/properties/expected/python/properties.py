@@ -1,139 +1,18 @@
 # Made by smachac 0.1.0 from main.yml (sha256 81866c077464b068).
 """Pick a part, carry it away, and never keep it."""
 
-import os
-import signal
-import socket
-import threading
-import traceback
+from smachac.runtime import signals
+from smachac.runtime.additions import (
+    error_as_outcome,
+    pass_on_stop_requests,
+    with_retries,
+    with_timeout,
+)
 
 try:
     import smach
 except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
-
-
-def withdraw(state):
-    """Take back the unanswered stop requests of a state and of the states inside."""
-    if state.preempt_requested():
-        state.recall_preempt()
-        for child in getattr(state, "get_children", dict)().values():
-            withdraw(child)
-
-
-def stoppable(container):
-    """Let a container pass on every stop request, also an early one and a second one."""
-    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
-        return container
-    run, request = container.execute, container.request_preempt
-    children = container.get_children
-    concurrent = isinstance(container, smach.Concurrence)
-    container.busy = container.asked = False
-
-    def pass_on():
-        for label in container.get_active_states() or list(children()):
-            child = children().get(label)
-            again = hasattr(child, "get_children")
-            if child and (again or not child.preempt_requested()):
-                child.request_preempt()
-
-    def request_preempt():
-        if not container.busy:
-            return request()
-        container.asked = True
-        if not concurrent:
-            smach.State.request_preempt(container)
-        pass_on()
-
-    def execute(*userdata):
-        container.busy, container.asked = True, container.preempt_requested()
-        if container.asked:
-            pass_on()
-        if concurrent:  # with its own request, SMACH for ROS 1 ends as preempted
-            container.service_preempt()
-        unanswered = True
-        try:
-            outcome = run(*userdata)
-            unanswered = any(child.preempt_requested() for child in children().values())
-            return outcome
-        finally:
-            container.busy = False
-            for child in children().values():
-                withdraw(child)
-            if concurrent and container.asked and unanswered:
-                request()
-
-    if concurrent and container._child_termination_cb:
-        ends = container._child_termination_cb
-
-        def ends_others(outcomes):
-            return not container.asked and ends(outcomes)
-
-        container._child_termination_cb = ends_others
-    container.execute, container.request_preempt = execute, request_preempt
-    return container
-
-
-def stoppable_again(machine):
-    """Let a machine pass on a second stop request while the same container in it runs."""
-    request, children = machine.request_preempt, machine.get_children
-
-    def request_preempt():
-        again = machine.preempt_requested() and getattr(smach, "compat", True)
-        request()
-        for label in machine.get_active_states() if again else ():
-            if hasattr(children().get(label), "get_children"):
-                children()[label].request_preempt()
-
-    machine.request_preempt = request_preempt
-    return machine
-
-
-def ends_preempted(container):
-    """Let a time limit or loop end as preempted after a request to stop."""
-    run, request = container.execute, container.request_preempt
-    recall = container.recall_preempt
-
-    def request_preempt():
-        container.stopped = True
-        request()
-
-    def recall_preempt():
-        container.stopped = False
-        recall()
-
-    def execute(*userdata):
-        container.stopped = container.stopped or container.preempt_requested()
-        try:
-            outcome = run(*userdata)
-            if container.stopped:
-                container.service_preempt()
-                outcome = "preempted"
-            return outcome
-        finally:
-            container.stopped = False
-
-    container.execute, container.stopped = execute, False
-    container.request_preempt = request_preempt
-    container.recall_preempt = recall_preempt
-    return container
-
-
-def error_as_outcome(state, outcome):
-    """Let a state end with an outcome where it would raise an exception, which is logged."""
-
-    def attempt(*userdata):
-        try:
-            return state.attempted(*userdata)
-        except Exception as error:
-            smach.logerr(traceback.format_exc(chain=False))
-            state.caught = error
-            return outcome
-
-    state.attempted, state.execute = state.execute, attempt
-    state.caught = None
-    state.register_outcomes([outcome])
-    return state
 
 
 class ScriptedState(smach.State):
@@ -162,66 +41,20 @@ class ScriptedState(smach.State):
         return step["outcome"]
 
 
-class SleepState(smach.State):
-    """Waits for `time` seconds: a number, or a function of the userdata.
-
-    A preempt request ends the wait.
-    """
-
-    def __init__(self, time, input_keys=(), outcomes=("succeeded", "preempted")):
-        super().__init__(
-            outcomes=list(outcomes),
-            input_keys=list(input_keys),
-        )
-        self.time = time
-        self.end_of_wait = threading.Event()
-
-    def request_preempt(self):
-        super().request_preempt()
-        self.end_of_wait.set()
-
-    def execute(self, userdata):
-        self.end_of_wait.wait(self.time(userdata) if callable(self.time) else self.time)
-        self.end_of_wait.clear()
-        if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
-            self.service_preempt()
-            return "preempted"
-        return "succeeded"
-
-
 def build():
     """Build the state machine `properties`."""
-    # main.yml:2
-    properties = stoppable_again(smach.StateMachine(outcomes=["succeeded", "aborted"]))
+    properties = smach.StateMachine(outcomes=["succeeded", "aborted"])  # main.yml:2
     with properties:
-        # main.yml:16
-        sm_pick = stoppable_again(
-            smach.StateMachine(outcomes=["succeeded", "aborted", "error"]),
-        )
+        sm_pick = smach.StateMachine(outcomes=["succeeded", "aborted", "error"])  # main.yml:16
         with sm_pick:
-            # main.yml:20
-            sm_close = stoppable(
-                smach.Iterator(
-                    outcomes=["succeeded", "preempted", "exhausted"],
-                    it=[1, 2, 3],
-                    it_label="attempt",
-                    exhausted_outcome="exhausted",
-                    input_keys=[],
-                    output_keys=[],
-                ),
-            )
-            with sm_close:
-                # main.yml:20
-                smach.Iterator.set_contained_state(
-                    "CLOSE",
-                    ScriptedState(outcomes=["succeeded", "aborted", "preempted"]),
-                    loop_outcomes=["aborted"],
-                    final_outcome_map={"aborted": "preempted"},
-                )
-
-            smach.StateMachine.add(
+            smach.StateMachine.add(  # main.yml:20
                 "CLOSE",
-                ends_preempted(sm_close),
+                with_retries(
+                    ScriptedState(outcomes=["succeeded", "aborted", "preempted"]),
+                    3,
+                    on=["aborted"],
+                    label="CLOSE",
+                ),
                 transitions={
                     "exhausted": "aborted",
                     "preempted": "aborted",
@@ -235,31 +68,12 @@ def build():
             transitions={"succeeded": "CARRY", "aborted": "LET_GO", "error": "LET_GO"},
         )
 
-        # main.yml:27
-        sm_carry = stoppable(
-            smach.Concurrence(
-                outcomes=["succeeded", "preempted", "timeout", "error"],
-                default_outcome="timeout",
-                outcome_map={
-                    "succeeded": {"CARRY": "succeeded", "TIMER": "preempted"},
-                    "preempted": {"CARRY": "preempted", "TIMER": "preempted"},
-                },
-                child_termination_cb=lambda outcomes: True,
-            ),
-        )
-        with sm_carry:
-            # main.yml:27
-            smach.Concurrence.add(
-                "CARRY",
-                ScriptedState(outcomes=["succeeded", "preempted"]),
-            )
-
-            # main.yml:27
-            smach.Concurrence.add("TIMER", SleepState(time=5.0))
-
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:27
             "CARRY",
-            error_as_outcome(ends_preempted(sm_carry), "error"),
+            error_as_outcome(
+                with_timeout(ScriptedState(outcomes=["succeeded", "preempted"]), 5.0, "CARRY"),
+                "error",
+            ),
             transitions={
                 "succeeded": "PLACE",
                 "timeout": "LET_GO",
@@ -268,73 +82,34 @@ def build():
             },
         )
 
-        # main.yml:33
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:33
             "PLACE",
             error_as_outcome(ScriptedState(outcomes=["succeeded"]), "error"),
             transitions={"succeeded": "REST", "error": "LET_GO"},
         )
 
-        # main.yml:38
-        smach.StateMachine.add(
-            "LET_GO",
-            ScriptedState(outcomes=["succeeded"]),
-            transitions={"succeeded": "aborted"},
+        smach.StateMachine.add(  # main.yml:38
+            "LET_GO", ScriptedState(outcomes=["succeeded"]), transitions={"succeeded": "aborted"}
         )
 
-        # main.yml:43
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:43
             "REST",
             error_as_outcome(ScriptedState(outcomes=["succeeded"]), "error"),
             transitions={"error": "LET_GO", "succeeded": "succeeded"},
         )
+    pass_on_stop_requests(properties)
     return properties
-
-
-stop_signals: list[int] = []
-
-
-def stop_at_signals(stop):
-    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
-
-    A thread reads the signals from a socket: Python runs no signal handler while the main
-    thread is blocked.
-    """
-    read, write = socket.socketpair()
-    write.setblocking(False)
-    signal.set_wakeup_fd(write.detach())
-    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
-    for number in handled:
-        signal.signal(number, lambda number, frame: stop_signals.append(number))
-
-    terminals = [stream for stream in range(3) if os.isatty(stream)]
-
-    def wait():
-        is_stopping = False
-        while True:
-            number = read.recv(1)[0]
-            if number in handled and is_stopping:
-                os._exit(128 + number)
-            if number in handled:
-                is_stopping = True
-                for stream in terminals:
-                    if not os.isatty(stream):  # it was closed: output to it is an error
-                        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
-                threading.Thread(target=stop, daemon=False).start()
-
-    threading.Thread(target=wait, daemon=True).start()
 
 
 def main():
     """Run the state machine once and return its outcome."""
     properties = build()
     if __name__ == "__main__":
-        stop_at_signals(properties.request_preempt)
+        signals.stop_at_signals(properties)
     return properties.execute()
 
 
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

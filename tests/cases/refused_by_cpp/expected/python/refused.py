@@ -2,12 +2,10 @@
 """The state machine `refused`."""
 
 import operator
-import os
-import signal
-import socket
 import statistics
 import sys
-import threading
+
+from smachac.runtime import signals
 
 try:
     from scales import Weigh
@@ -52,13 +50,11 @@ class CallbacksState(smach.State):
 
 def build():
     """Build the state machine `refused`."""
-    # main.yml:2
-    refused = smach.StateMachine(outcomes=["done"], output_keys=["n", "label"])
+    refused = smach.StateMachine(outcomes=["done"], output_keys=["n", "label"])  # main.yml:2
     refused.userdata.n = 3
     refused.userdata.label = "block"
     with refused:
-        # main.yml:9
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:9
             "MEASURE",
             CallbacksState(
                 callbacks={
@@ -71,8 +67,7 @@ def build():
             transitions={"succeeded": "NAME"},
         )
 
-        # main.yml:17
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:17
             "NAME",
             CallbacksState(
                 callbacks={"n": operator.index, "label": lambda ud: ud.label + ud.n},
@@ -82,55 +77,19 @@ def build():
             transitions={"succeeded": "WEIGH"},
         )
 
-        # main.yml:23
-        smach.StateMachine.add("WEIGH", Weigh(), transitions={"weighed": "done"})
+        smach.StateMachine.add("WEIGH", Weigh(), transitions={"weighed": "done"})  # main.yml:23
     return refused
-
-
-stop_signals: list[int] = []
-
-
-def stop_at_signals(stop):
-    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
-
-    A thread reads the signals from a socket: Python runs no signal handler while the main
-    thread is blocked.
-    """
-    read, write = socket.socketpair()
-    write.setblocking(False)
-    signal.set_wakeup_fd(write.detach())
-    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
-    for number in handled:
-        signal.signal(number, lambda number, frame: stop_signals.append(number))
-
-    terminals = [stream for stream in range(3) if os.isatty(stream)]
-
-    def wait():
-        is_stopping = False
-        while True:
-            number = read.recv(1)[0]
-            if number in handled and is_stopping:
-                os._exit(128 + number)
-            if number in handled:
-                is_stopping = True
-                for stream in terminals:
-                    if not os.isatty(stream):  # it was closed: output to it is an error
-                        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
-                threading.Thread(target=stop, daemon=False).start()
-
-    threading.Thread(target=wait, daemon=True).start()
 
 
 def main():
     """Run the state machine once and return its outcome."""
     refused = build()
     if __name__ == "__main__":
-        stop_at_signals(refused.request_preempt)
+        signals.stop_at_signals(refused)
     return refused.execute()
 
 
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

@@ -1,10 +1,7 @@
 # Made by smachac 0.1.0 from main.yml (sha256 05e3a17974dfb005).
 """The state machine `pass_door`."""
 
-import os
-import signal
-import socket
-import threading
+from smachac.runtime import signals
 
 try:
     import smach
@@ -40,35 +37,29 @@ class ScriptedState(smach.State):
 
 def build():
     """Build the state machine `pass_door`."""
-    # main.yml:2
-    pass_door = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    pass_door = smach.StateMachine(outcomes=["succeeded", "aborted"])  # main.yml:2
     with pass_door:
-        # main.yml:7
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:7
             "DRIVE_TO_DOOR",
             ScriptedState(outcomes=["there", "lost"]),
             transitions={"there": "OPEN_DOOR", "lost": "aborted"},
         )
 
-        # main.yml:12
-        sm_open_door = smach.StateMachine(outcomes=["open", "stuck"])
+        sm_open_door = smach.StateMachine(outcomes=["open", "stuck"])  # main.yml:12
         with sm_open_door:
-            # main.yml:17
-            smach.StateMachine.add(
+            smach.StateMachine.add(  # main.yml:17
                 "GRASP_HANDLE",
                 ScriptedState(outcomes=["held", "missed"]),
                 transitions={"held": "TURN_HANDLE", "missed": "stuck"},
             )
 
-            # main.yml:21
-            smach.StateMachine.add(
+            smach.StateMachine.add(  # main.yml:21
                 "TURN_HANDLE",
                 ScriptedState(outcomes=["turned", "blocked"]),
                 transitions={"turned": "PULL", "blocked": "stuck"},
             )
 
-            # main.yml:25
-            smach.StateMachine.add(
+            smach.StateMachine.add(  # main.yml:25
                 "PULL",
                 ScriptedState(outcomes=["open", "stuck"]),
                 transitions={"open": "open", "stuck": "stuck"},
@@ -80,66 +71,27 @@ def build():
             transitions={"open": "DRIVE_THROUGH", "stuck": "CALL_FOR_HELP"},
         )
 
-        # main.yml:30
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:30
             "DRIVE_THROUGH",
             ScriptedState(outcomes=["succeeded", "aborted"]),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},
         )
 
-        # main.yml:35
-        smach.StateMachine.add(
-            "CALL_FOR_HELP",
-            ScriptedState(outcomes=["called"]),
-            transitions={"called": "aborted"},
+        smach.StateMachine.add(  # main.yml:35
+            "CALL_FOR_HELP", ScriptedState(outcomes=["called"]), transitions={"called": "aborted"}
         )
     return pass_door
-
-
-stop_signals: list[int] = []
-
-
-def stop_at_signals(stop):
-    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
-
-    A thread reads the signals from a socket: Python runs no signal handler while the main
-    thread is blocked.
-    """
-    read, write = socket.socketpair()
-    write.setblocking(False)
-    signal.set_wakeup_fd(write.detach())
-    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
-    for number in handled:
-        signal.signal(number, lambda number, frame: stop_signals.append(number))
-
-    terminals = [stream for stream in range(3) if os.isatty(stream)]
-
-    def wait():
-        is_stopping = False
-        while True:
-            number = read.recv(1)[0]
-            if number in handled and is_stopping:
-                os._exit(128 + number)
-            if number in handled:
-                is_stopping = True
-                for stream in terminals:
-                    if not os.isatty(stream):  # it was closed: output to it is an error
-                        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
-                threading.Thread(target=stop, daemon=False).start()
-
-    threading.Thread(target=wait, daemon=True).start()
 
 
 def main():
     """Run the state machine once and return its outcome."""
     pass_door = build()
     if __name__ == "__main__":
-        stop_at_signals(pass_door.request_preempt)
+        signals.stop_at_signals(pass_door)
     return pass_door.execute()
 
 
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

@@ -1,91 +1,13 @@
 # Made by smachac 0.1.0 from main.yml (sha256 599aef45d8faa625).
 """The state machine `prepare`."""
 
-import os
-import signal
-import socket
-import threading
+from smachac.runtime import signals
+from smachac.runtime.additions import SleepState, pass_on_stop_requests
 
 try:
     import smach
 except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
-
-
-def withdraw(state):
-    """Take back the unanswered stop requests of a state and of the states inside."""
-    if state.preempt_requested():
-        state.recall_preempt()
-        for child in getattr(state, "get_children", dict)().values():
-            withdraw(child)
-
-
-def stoppable(container):
-    """Let a container pass on every stop request, also an early one and a second one."""
-    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
-        return container
-    run, request = container.execute, container.request_preempt
-    children = container.get_children
-    concurrent = isinstance(container, smach.Concurrence)
-    container.busy = container.asked = False
-
-    def pass_on():
-        for label in container.get_active_states() or list(children()):
-            child = children().get(label)
-            again = hasattr(child, "get_children")
-            if child and (again or not child.preempt_requested()):
-                child.request_preempt()
-
-    def request_preempt():
-        if not container.busy:
-            return request()
-        container.asked = True
-        if not concurrent:
-            smach.State.request_preempt(container)
-        pass_on()
-
-    def execute(*userdata):
-        container.busy, container.asked = True, container.preempt_requested()
-        if container.asked:
-            pass_on()
-        if concurrent:  # with its own request, SMACH for ROS 1 ends as preempted
-            container.service_preempt()
-        unanswered = True
-        try:
-            outcome = run(*userdata)
-            unanswered = any(child.preempt_requested() for child in children().values())
-            return outcome
-        finally:
-            container.busy = False
-            for child in children().values():
-                withdraw(child)
-            if concurrent and container.asked and unanswered:
-                request()
-
-    if concurrent and container._child_termination_cb:
-        ends = container._child_termination_cb
-
-        def ends_others(outcomes):
-            return not container.asked and ends(outcomes)
-
-        container._child_termination_cb = ends_others
-    container.execute, container.request_preempt = execute, request_preempt
-    return container
-
-
-def stoppable_again(machine):
-    """Let a machine pass on a second stop request while the same container in it runs."""
-    request, children = machine.request_preempt, machine.get_children
-
-    def request_preempt():
-        again = machine.preempt_requested() and getattr(smach, "compat", True)
-        request()
-        for label in machine.get_active_states() if again else ():
-            if hasattr(children().get(label), "get_children"):
-                children()[label].request_preempt()
-
-    machine.request_preempt = request_preempt
-    return machine
 
 
 class ScriptedState(smach.State):
@@ -114,55 +36,21 @@ class ScriptedState(smach.State):
         return step["outcome"]
 
 
-class SleepState(smach.State):
-    """Waits for `time` seconds: a number, or a function of the userdata.
-
-    A preempt request ends the wait.
-    """
-
-    def __init__(self, time, input_keys=(), outcomes=("succeeded", "preempted")):
-        super().__init__(
-            outcomes=list(outcomes),
-            input_keys=list(input_keys),
-        )
-        self.time = time
-        self.end_of_wait = threading.Event()
-
-    def request_preempt(self):
-        super().request_preempt()
-        self.end_of_wait.set()
-
-    def execute(self, userdata):
-        self.end_of_wait.wait(self.time(userdata) if callable(self.time) else self.time)
-        self.end_of_wait.clear()
-        if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
-            self.service_preempt()
-            return "preempted"
-        return "succeeded"
-
-
 def build():
     """Build the state machine `prepare`."""
-    # main.yml:2
-    prepare = stoppable_again(smach.StateMachine(outcomes=["succeeded", "aborted"]))
+    prepare = smach.StateMachine(outcomes=["succeeded", "aborted"])  # main.yml:2
     with prepare:
-        # main.yml:7
-        sm_find_and_warm_up = stoppable(
-            smach.Concurrence(
-                outcomes=["ready", "not_ready"],
-                default_outcome="not_ready",
-                outcome_map={"ready": {"FIND_PART": "found", "WARM_UP": "succeeded"}},
-            ),
+        sm_find_and_warm_up = smach.Concurrence(  # main.yml:7
+            outcomes=["ready", "not_ready"],
+            default_outcome="not_ready",
+            outcome_map={"ready": {"FIND_PART": "found", "WARM_UP": "succeeded"}},
         )
         with sm_find_and_warm_up:
-            # main.yml:15
-            smach.Concurrence.add(
-                "FIND_PART",
-                ScriptedState(outcomes=["found", "nothing"]),
+            smach.Concurrence.add(  # main.yml:15
+                "FIND_PART", ScriptedState(outcomes=["found", "nothing"])
             )
 
-            # main.yml:18
-            smach.Concurrence.add("WARM_UP", SleepState(time=0.05))
+            smach.Concurrence.add("WARM_UP", SleepState(time=0.05))  # main.yml:18
 
         smach.StateMachine.add(
             "FIND_AND_WARM_UP",
@@ -170,59 +58,24 @@ def build():
             transitions={"ready": "PICK", "not_ready": "aborted"},
         )
 
-        # main.yml:22
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:22
             "PICK",
             ScriptedState(outcomes=["succeeded", "aborted"]),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},
         )
+    pass_on_stop_requests(prepare)
     return prepare
-
-
-stop_signals: list[int] = []
-
-
-def stop_at_signals(stop):
-    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
-
-    A thread reads the signals from a socket: Python runs no signal handler while the main
-    thread is blocked.
-    """
-    read, write = socket.socketpair()
-    write.setblocking(False)
-    signal.set_wakeup_fd(write.detach())
-    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
-    for number in handled:
-        signal.signal(number, lambda number, frame: stop_signals.append(number))
-
-    terminals = [stream for stream in range(3) if os.isatty(stream)]
-
-    def wait():
-        is_stopping = False
-        while True:
-            number = read.recv(1)[0]
-            if number in handled and is_stopping:
-                os._exit(128 + number)
-            if number in handled:
-                is_stopping = True
-                for stream in terminals:
-                    if not os.isatty(stream):  # it was closed: output to it is an error
-                        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
-                threading.Thread(target=stop, daemon=False).start()
-
-    threading.Thread(target=wait, daemon=True).start()
 
 
 def main():
     """Run the state machine once and return its outcome."""
     prepare = build()
     if __name__ == "__main__":
-        stop_at_signals(prepare.request_preempt)
+        signals.stop_at_signals(prepare)
     return prepare.execute()
 
 
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

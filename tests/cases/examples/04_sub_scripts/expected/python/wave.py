@@ -1,10 +1,7 @@
 # Made by smachac 0.1.0 from main.yml (sha256 d4b5d1deaa440d73).
 """The state machine `wave`."""
 
-import os
-import signal
-import socket
-import threading
+from smachac.runtime import signals
 
 try:
     import smach
@@ -53,18 +50,15 @@ class ScriptedState(smach.State):
 
 def build():
     """Build the state machine `wave`."""
-    # main.yml:2
-    wave = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    wave = smach.StateMachine(outcomes=["succeeded", "aborted"])  # main.yml:2
     with wave:
-        # main.yml:9
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:9
             "WAVE_LEFT",
             build_wave(topic="/left/joint_command", times=2),
             transitions={"succeeded": "WAVE_RIGHT", "aborted": "aborted"},
         )
 
-        # main.yml:14
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:14
             "WAVE_RIGHT",
             build_wave(topic="/right/joint_command", times=3),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},
@@ -78,15 +72,13 @@ def build_wave(topic, times):
     sm_wave.userdata.topic = topic
     sm_wave.userdata.times = times
     with sm_wave:
-        # wave.yml:10
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # wave.yml:10
             "TELL",
             PrintUserdataState(input_keys=["topic", "times"]),
             transitions={"succeeded": "MOVE"},
         )
 
-        # wave.yml:14
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # wave.yml:14
             "MOVE",
             ScriptedState(outcomes=["succeeded", "aborted"]),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},
@@ -94,50 +86,15 @@ def build_wave(topic, times):
     return sm_wave
 
 
-stop_signals: list[int] = []
-
-
-def stop_at_signals(stop):
-    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
-
-    A thread reads the signals from a socket: Python runs no signal handler while the main
-    thread is blocked.
-    """
-    read, write = socket.socketpair()
-    write.setblocking(False)
-    signal.set_wakeup_fd(write.detach())
-    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
-    for number in handled:
-        signal.signal(number, lambda number, frame: stop_signals.append(number))
-
-    terminals = [stream for stream in range(3) if os.isatty(stream)]
-
-    def wait():
-        is_stopping = False
-        while True:
-            number = read.recv(1)[0]
-            if number in handled and is_stopping:
-                os._exit(128 + number)
-            if number in handled:
-                is_stopping = True
-                for stream in terminals:
-                    if not os.isatty(stream):  # it was closed: output to it is an error
-                        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
-                threading.Thread(target=stop, daemon=False).start()
-
-    threading.Thread(target=wait, daemon=True).start()
-
-
 def main():
     """Run the state machine once and return its outcome."""
     wave = build()
     if __name__ == "__main__":
-        stop_at_signals(wave.request_preempt)
+        signals.stop_at_signals(wave)
     return wave.execute()
 
 
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

@@ -1,10 +1,7 @@
 # Made by smachac 0.1.0 from main.yml (sha256 151be300629b9acd).
 """The state machine `measure`."""
 
-import os
-import signal
-import socket
-import threading
+from smachac.runtime import signals
 
 try:
     import smach
@@ -41,18 +38,14 @@ class ScriptedState(smach.State):
 class ConditionalOutcomeState(smach.State):
     """Ends with the first outcome whose condition is true, otherwise the default."""
 
-    def __init__(
-        self, outcomes, callbacks, default_outcome, input_keys=(), output_keys=()
-    ):
+    def __init__(self, outcomes, callbacks, default_outcome, input_keys=(), output_keys=()):
         super().__init__(
             outcomes=outcomes,
             input_keys=list(input_keys),
             output_keys=list(output_keys),
         )
         self.writes_outcome = "outcome" in output_keys
-        self.conditions = [
-            (name, callbacks[name]) for name in outcomes if name in callbacks
-        ]
+        self.conditions = [(name, callbacks[name]) for name in outcomes if name in callbacks]
         self.default_outcome = default_outcome
 
     def execute(self, userdata):
@@ -78,12 +71,10 @@ class PrintUserdataState(smach.State):
 
 def build():
     """Build the state machine `measure`."""
-    # main.yml:2
-    measure = smach.StateMachine(outcomes=["succeeded"])
+    measure = smach.StateMachine(outcomes=["succeeded"])  # main.yml:2
     measure.userdata.limit = 0.08
     with measure:
-        # main.yml:9
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:9
             "MEASURE_WIDTH",
             ScriptedState(
                 outcomes=["measured"],
@@ -94,14 +85,11 @@ def build():
             remapping={"width": "part_width"},
         )
 
-        # main.yml:17
-        sm_judge = smach.StateMachine(
-            outcomes=["fits", "too_wide"],
-            input_keys=["width", "limit"],
+        sm_judge = smach.StateMachine(  # main.yml:17
+            outcomes=["fits", "too_wide"], input_keys=["width", "limit"]
         )
         with sm_judge:
-            # main.yml:24
-            smach.StateMachine.add(
+            smach.StateMachine.add(  # main.yml:24
                 "COMPARE",
                 ConditionalOutcomeState(
                     outcomes=["fits", "too_wide"],
@@ -119,8 +107,7 @@ def build():
             remapping={"width": "part_width"},
         )
 
-        # main.yml:32
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:32
             "TELL",
             PrintUserdataState(input_keys=["part_width", "limit"]),
             transitions={"succeeded": "succeeded"},
@@ -128,50 +115,15 @@ def build():
     return measure
 
 
-stop_signals: list[int] = []
-
-
-def stop_at_signals(stop):
-    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
-
-    A thread reads the signals from a socket: Python runs no signal handler while the main
-    thread is blocked.
-    """
-    read, write = socket.socketpair()
-    write.setblocking(False)
-    signal.set_wakeup_fd(write.detach())
-    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
-    for number in handled:
-        signal.signal(number, lambda number, frame: stop_signals.append(number))
-
-    terminals = [stream for stream in range(3) if os.isatty(stream)]
-
-    def wait():
-        is_stopping = False
-        while True:
-            number = read.recv(1)[0]
-            if number in handled and is_stopping:
-                os._exit(128 + number)
-            if number in handled:
-                is_stopping = True
-                for stream in terminals:
-                    if not os.isatty(stream):  # it was closed: output to it is an error
-                        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
-                threading.Thread(target=stop, daemon=False).start()
-
-    threading.Thread(target=wait, daemon=True).start()
-
-
 def main():
     """Run the state machine once and return its outcome."""
     measure = build()
     if __name__ == "__main__":
-        stop_at_signals(measure.request_preempt)
+        signals.stop_at_signals(measure)
     return measure.execute()
 
 
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

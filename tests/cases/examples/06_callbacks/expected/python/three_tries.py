@@ -1,10 +1,7 @@
 # Made by smachac 0.1.0 from main.yml (sha256 b628bda36d0008e8).
 """The state machine `three_tries`."""
 
-import os
-import signal
-import socket
-import threading
+from smachac.runtime import signals
 
 try:
     import smach
@@ -64,18 +61,14 @@ class CallbacksState(smach.State):
 class ConditionalOutcomeState(smach.State):
     """Ends with the first outcome whose condition is true, otherwise the default."""
 
-    def __init__(
-        self, outcomes, callbacks, default_outcome, input_keys=(), output_keys=()
-    ):
+    def __init__(self, outcomes, callbacks, default_outcome, input_keys=(), output_keys=()):
         super().__init__(
             outcomes=outcomes,
             input_keys=list(input_keys),
             output_keys=list(output_keys),
         )
         self.writes_outcome = "outcome" in output_keys
-        self.conditions = [
-            (name, callbacks[name]) for name in outcomes if name in callbacks
-        ]
+        self.conditions = [(name, callbacks[name]) for name in outcomes if name in callbacks]
         self.default_outcome = default_outcome
 
     def execute(self, userdata):
@@ -88,26 +81,19 @@ class ConditionalOutcomeState(smach.State):
 
 def build():
     """Build the state machine `three_tries`."""
-    # main.yml:2
-    three_tries = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    three_tries = smach.StateMachine(outcomes=["succeeded", "aborted"])  # main.yml:2
     three_tries.userdata.tries = 0
     with three_tries:
-        # main.yml:8
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:8
             "TRY",
             ScriptedState(
                 outcomes=["succeeded", "aborted"],
-                steps=[
-                    {"outcome": "aborted"},
-                    {"outcome": "aborted"},
-                    {"outcome": "succeeded"},
-                ],
+                steps=[{"outcome": "aborted"}, {"outcome": "aborted"}, {"outcome": "succeeded"}],
             ),
             transitions={"succeeded": "succeeded", "aborted": "COUNT"},
         )
 
-        # main.yml:14
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:14
             "COUNT",
             CallbacksState(
                 callbacks={"tries": lambda ud: ud.tries + 1},
@@ -117,8 +103,7 @@ def build():
             transitions={"succeeded": "DECIDE"},
         )
 
-        # main.yml:21
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:21
             "DECIDE",
             ConditionalOutcomeState(
                 outcomes=["again", "enough"],
@@ -131,50 +116,15 @@ def build():
     return three_tries
 
 
-stop_signals: list[int] = []
-
-
-def stop_at_signals(stop):
-    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
-
-    A thread reads the signals from a socket: Python runs no signal handler while the main
-    thread is blocked.
-    """
-    read, write = socket.socketpair()
-    write.setblocking(False)
-    signal.set_wakeup_fd(write.detach())
-    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
-    for number in handled:
-        signal.signal(number, lambda number, frame: stop_signals.append(number))
-
-    terminals = [stream for stream in range(3) if os.isatty(stream)]
-
-    def wait():
-        is_stopping = False
-        while True:
-            number = read.recv(1)[0]
-            if number in handled and is_stopping:
-                os._exit(128 + number)
-            if number in handled:
-                is_stopping = True
-                for stream in terminals:
-                    if not os.isatty(stream):  # it was closed: output to it is an error
-                        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
-                threading.Thread(target=stop, daemon=False).start()
-
-    threading.Thread(target=wait, daemon=True).start()
-
-
 def main():
     """Run the state machine once and return its outcome."""
     three_tries = build()
     if __name__ == "__main__":
-        stop_at_signals(three_tries.request_preempt)
+        signals.stop_at_signals(three_tries)
     return three_tries.execute()
 
 
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

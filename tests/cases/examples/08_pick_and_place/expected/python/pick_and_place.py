@@ -2,6 +2,7 @@
 """Pick the block and place it on the mark."""
 
 from smachac import sim
+from smachac.runtime.additions import pass_on_stop_requests
 
 try:
     import smach
@@ -26,27 +27,10 @@ def optional(userdata, key):
     return None
 
 
-def stoppable_again(machine):
-    """Let a machine pass on a second stop request while the same container in it runs."""
-    request, children = machine.request_preempt, machine.get_children
-
-    def request_preempt():
-        again = machine.preempt_requested() and getattr(smach, "compat", True)
-        request()
-        for label in machine.get_active_states() if again else ():
-            if hasattr(children().get(label), "get_children"):
-                children()[label].request_preempt()
-
-    machine.request_preempt = request_preempt
-    return machine
-
-
 class LoadModelState(smach.State):
     """Adds a model to the simulated world."""
 
-    def __init__(
-        self, model_name, model_path=None, body=None, spread=(0, 0, 0), apart=None
-    ):
+    def __init__(self, model_name, model_path=None, body=None, spread=(0, 0, 0), apart=None):
         super().__init__(
             outcomes=["succeeded", "aborted"],
             input_keys=["pose", "reference_frame"],
@@ -185,10 +169,7 @@ class CheckPlacedState(smach.State):
 
 def build():
     """Build the state machine `pick_and_place`."""
-    # main.yml:2
-    pick_and_place = stoppable_again(
-        smach.StateMachine(outcomes=["succeeded", "aborted"]),
-    )
+    pick_and_place = smach.StateMachine(outcomes=["succeeded", "aborted"])  # main.yml:2
     pick_and_place.userdata.home = [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785]
     pick_and_place.userdata.hover_offset = [[0.0, 0.0, 0.15], [0.0, 0.0, 0.0, 1.0]]
     pick_and_place.userdata.table_pose = [[0.55, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
@@ -196,97 +177,69 @@ def build():
     pick_and_place.userdata.block_pose = [[0.5, 0.0, 0.025], [0.0, 0.0, 0.0, 1.0]]
     pick_and_place.userdata.goal_pose = [[0.5, 0.0, 0.025], [0.0, 0.0, 0.0, 1.0]]
     with pick_and_place:
-        # main.yml:11
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:11
             "LOAD_TABLE",
             LoadModelState(model_name="table"),
             transitions={"succeeded": "LOAD_BLOCK", "aborted": "aborted"},
             remapping={"pose": "table_pose", "reference_frame": "table_frame"},
         )
 
-        # main.yml:20
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:20
             "LOAD_BLOCK",
             LoadModelState(model_name="block", spread=[0.14, 0.28, 3.1416]),
             transitions={"succeeded": "LOAD_MARK", "aborted": "aborted"},
             remapping={"pose": "block_pose"},
         )
 
-        # main.yml:29
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:29
             "LOAD_MARK",
-            LoadModelState(
-                model_name="goal",
-                spread=[0.14, 0.28, 0.0],
-                apart={"block": 0.15},
-            ),
+            LoadModelState(model_name="goal", spread=[0.14, 0.28, 0.0], apart={"block": 0.15}),
             transitions={"succeeded": "MOVE_TO_START", "aborted": "aborted"},
             remapping={"pose": "goal_pose"},
         )
 
-        # main.yml:39
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:39
             "MOVE_TO_START",
             MoveToJointPositionsState(),
-            transitions={
-                "succeeded": "PICK_BLOCK",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "PICK_BLOCK", "aborted": "aborted", "preempted": "aborted"},
             remapping={"positions": "home"},
         )
 
-        # main.yml:44
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:44
             "PICK_BLOCK",
             build_pick_block(),
             transitions={"succeeded": "PLACE_BLOCK", "aborted": "LET_GO"},
             remapping={"pick_pose": "block_pose", "hover_offset": "hover_offset"},
         )
 
-        # main.yml:50
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:50
             "PLACE_BLOCK",
             build_place_block(),
             transitions={"succeeded": "GO_HOME", "aborted": "LET_GO"},
             remapping={"place_pose": "goal_pose", "hover_offset": "hover_offset"},
         )
 
-        # main.yml:56
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:56
             "GO_HOME",
             MoveToJointPositionsState(),
-            transitions={
-                "succeeded": "succeeded",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "succeeded", "aborted": "aborted", "preempted": "aborted"},
             remapping={"positions": "home"},
         )
 
-        # main.yml:62
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:62
             "LET_GO",
             GripperState(command="open"),
-            transitions={
-                "succeeded": "RETREAT",
-                "aborted": "RETREAT",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "RETREAT", "aborted": "RETREAT", "preempted": "aborted"},
             remapping={"width": "gripper_width"},
         )
 
-        # main.yml:68
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:68
             "RETREAT",
             MoveToJointPositionsState(),
-            transitions={
-                "succeeded": "aborted",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "aborted", "aborted": "aborted", "preempted": "aborted"},
             remapping={"positions": "home"},
         )
+    pass_on_stop_requests(pick_and_place)
     return pick_and_place
 
 
@@ -296,47 +249,30 @@ def build_pick_block():
     Grasp a block from above and lift it.
     """
     sm_pick_block = smach.StateMachine(
-        outcomes=["succeeded", "aborted"],
-        input_keys=["pick_pose", "hover_offset"],
+        outcomes=["succeeded", "aborted"], input_keys=["pick_pose", "hover_offset"]
     )
     with sm_pick_block:
-        # pick_block.yml:8
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:8
             "OPEN_GRIPPER",
             GripperState(command="open"),
-            transitions={
-                "succeeded": "PLAN_HOVER",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "PLAN_HOVER", "aborted": "aborted", "preempted": "aborted"},
         )
 
-        # pick_block.yml:13
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:13
             "PLAN_HOVER",
             PoseToJointPositionsState(grasp=True),
             transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
-            remapping={
-                "pose": "pick_pose",
-                "offset": "hover_offset",
-                "joints": "hover_joints",
-            },
+            remapping={"pose": "pick_pose", "offset": "hover_offset", "joints": "hover_joints"},
         )
 
-        # pick_block.yml:19
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:19
             "MOVE_TO_HOVER",
             MoveToJointPositionsState(),
-            transitions={
-                "succeeded": "MOVE_DOWN",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "MOVE_DOWN", "aborted": "aborted", "preempted": "aborted"},
             remapping={"positions": "hover_joints"},
         )
 
-        # pick_block.yml:24
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:24
             "MOVE_DOWN",
             MoveAlongState(grasp=True),
             transitions={
@@ -347,31 +283,20 @@ def build_pick_block():
             remapping={"pose": "pick_pose"},
         )
 
-        # pick_block.yml:30
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:30
             "CLOSE_GRIPPER",
             GripperState(command="close"),
-            transitions={
-                "succeeded": "LIFT",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "LIFT", "aborted": "aborted", "preempted": "aborted"},
         )
 
-        # pick_block.yml:35
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:35
             "LIFT",
             MoveAlongState(grasp=True),
-            transitions={
-                "succeeded": "CHECK_GRASP",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "CHECK_GRASP", "aborted": "aborted", "preempted": "aborted"},
             remapping={"pose": "pick_pose", "offset": "hover_offset"},
         )
 
-        # pick_block.yml:41
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:41
             "CHECK_GRASP",
             CheckGraspState(body="block"),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},
@@ -385,43 +310,30 @@ def build_place_block():
     Place the block in the gripper and look whether it lies there.
     """
     sm_place_block = smach.StateMachine(
-        outcomes=["succeeded", "aborted"],
-        input_keys=["place_pose", "hover_offset"],
+        outcomes=["succeeded", "aborted"], input_keys=["place_pose", "hover_offset"]
     )
     with sm_place_block:
-        # place_block.yml:9
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:9
             "PLAN_HOVER",
             PoseToJointPositionsState(grasp=True),
             transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
-            remapping={
-                "pose": "place_pose",
-                "offset": "hover_offset",
-                "joints": "hover_joints",
-            },
+            remapping={"pose": "place_pose", "offset": "hover_offset", "joints": "hover_joints"},
         )
 
-        # place_block.yml:15
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:15
             "MOVE_TO_HOVER",
             MoveToJointPositionsState(),
-            transitions={
-                "succeeded": "CHECK_GRASP",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "CHECK_GRASP", "aborted": "aborted", "preempted": "aborted"},
             remapping={"positions": "hover_joints"},
         )
 
-        # place_block.yml:20
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:20
             "CHECK_GRASP",
             CheckGraspState(body="block"),
             transitions={"succeeded": "MOVE_DOWN", "aborted": "aborted"},
         )
 
-        # place_block.yml:25
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:25
             "MOVE_DOWN",
             MoveAlongState(grasp=True),
             transitions={
@@ -432,19 +344,13 @@ def build_place_block():
             remapping={"pose": "place_pose"},
         )
 
-        # place_block.yml:31
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:31
             "OPEN_GRIPPER",
             GripperState(command="open"),
-            transitions={
-                "succeeded": "MOVE_UP",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "MOVE_UP", "aborted": "aborted", "preempted": "aborted"},
         )
 
-        # place_block.yml:36
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:36
             "MOVE_UP",
             MoveAlongState(grasp=True),
             transitions={
@@ -455,8 +361,7 @@ def build_place_block():
             remapping={"pose": "place_pose", "offset": "hover_offset"},
         )
 
-        # place_block.yml:42
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:42
             "CHECK_PLACED",
             CheckPlacedState(body="block"),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},

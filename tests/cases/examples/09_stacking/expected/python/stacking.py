@@ -2,6 +2,7 @@
 """Stack two blocks on the mark."""
 
 from smachac import sim
+from smachac.runtime.additions import pass_on_stop_requests
 
 try:
     import smach
@@ -26,27 +27,10 @@ def optional(userdata, key):
     return None
 
 
-def stoppable_again(machine):
-    """Let a machine pass on a second stop request while the same container in it runs."""
-    request, children = machine.request_preempt, machine.get_children
-
-    def request_preempt():
-        again = machine.preempt_requested() and getattr(smach, "compat", True)
-        request()
-        for label in machine.get_active_states() if again else ():
-            if hasattr(children().get(label), "get_children"):
-                children()[label].request_preempt()
-
-    machine.request_preempt = request_preempt
-    return machine
-
-
 class LoadModelState(smach.State):
     """Adds a model to the simulated world."""
 
-    def __init__(
-        self, model_name, model_path=None, body=None, spread=(0, 0, 0), apart=None
-    ):
+    def __init__(self, model_name, model_path=None, body=None, spread=(0, 0, 0), apart=None):
         super().__init__(
             outcomes=["succeeded", "aborted"],
             input_keys=["pose", "reference_frame"],
@@ -208,8 +192,7 @@ class CheckPlacedState(smach.State):
 
 def build():
     """Build the state machine `stacking`."""
-    # main.yml:2
-    stacking = stoppable_again(smach.StateMachine(outcomes=["succeeded", "aborted"]))
+    stacking = smach.StateMachine(outcomes=["succeeded", "aborted"])  # main.yml:2
     stacking.userdata.home = [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785]
     stacking.userdata.hover_offset = [[0.0, 0.0, 0.15], [0.0, 0.0, 0.0, 1.0]]
     stacking.userdata.table_pose = [[0.55, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
@@ -218,28 +201,21 @@ def build():
     stacking.userdata.second_pose = [[0.5, 0.0, 0.025], [0.0, 0.0, 0.0, 1.0]]
     stacking.userdata.goal_pose = [[0.5, 0.0, 0.025], [0.0, 0.0, 0.0, 1.0]]
     with stacking:
-        # main.yml:11
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:11
             "LOAD_TABLE",
             LoadModelState(model_name="table"),
             transitions={"succeeded": "LOAD_FIRST", "aborted": "aborted"},
             remapping={"pose": "table_pose", "reference_frame": "table_frame"},
         )
 
-        # main.yml:20
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:20
             "LOAD_FIRST",
-            LoadModelState(
-                model_name="block",
-                body="first",
-                spread=[0.14, 0.28, 3.1416],
-            ),
+            LoadModelState(model_name="block", body="first", spread=[0.14, 0.28, 3.1416]),
             transitions={"succeeded": "LOAD_SECOND", "aborted": "aborted"},
             remapping={"pose": "first_pose"},
         )
 
-        # main.yml:30
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:30
             "LOAD_SECOND",
             LoadModelState(
                 model_name="block",
@@ -251,30 +227,22 @@ def build():
             remapping={"pose": "second_pose"},
         )
 
-        # main.yml:41
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:41
             "LOAD_MARK",
             LoadModelState(
-                model_name="goal",
-                spread=[0.14, 0.28, 0.0],
-                apart={"first": 0.15, "second": 0.15},
+                model_name="goal", spread=[0.14, 0.28, 0.0], apart={"first": 0.15, "second": 0.15}
             ),
             transitions={"succeeded": "PLAN_STACK", "aborted": "aborted"},
             remapping={"pose": "goal_pose"},
         )
 
-        # main.yml:51
         # The second block goes on top of the first, one edge length (0.05 m) higher.
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:51
             "PLAN_STACK",
             CallbacksState(
                 callbacks={
                     "top_pose": lambda ud: [
-                        [
-                            ud.goal_pose[0][0],
-                            ud.goal_pose[0][1],
-                            ud.goal_pose[0][2] + 0.05,
-                        ],
+                        [ud.goal_pose[0][0], ud.goal_pose[0][1], ud.goal_pose[0][2] + 0.05],
                         ud.goal_pose[1],
                     ],
                 },
@@ -284,94 +252,70 @@ def build():
             transitions={"succeeded": "MOVE_TO_START"},
         )
 
-        # main.yml:60
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:60
             "MOVE_TO_START",
             MoveToJointPositionsState(),
-            transitions={
-                "succeeded": "PICK_FIRST",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "PICK_FIRST", "aborted": "aborted", "preempted": "aborted"},
             remapping={"positions": "home"},
         )
 
-        # main.yml:65
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:65
             "PICK_FIRST",
             build_pick_block(body="first"),
             transitions={"succeeded": "PLACE_FIRST", "aborted": "LET_GO"},
             remapping={"pick_pose": "first_pose", "hover_offset": "hover_offset"},
         )
 
-        # main.yml:71
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:71
             "PLACE_FIRST",
             build_place_block(body="first"),
             transitions={"succeeded": "PICK_SECOND", "aborted": "LET_GO"},
             remapping={"place_pose": "goal_pose", "hover_offset": "hover_offset"},
         )
 
-        # main.yml:77
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:77
             "PICK_SECOND",
             build_pick_block(body="second"),
             transitions={"succeeded": "PLACE_SECOND", "aborted": "LET_GO"},
             remapping={"pick_pose": "second_pose", "hover_offset": "hover_offset"},
         )
 
-        # main.yml:83
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:83
             "PLACE_SECOND",
             build_place_block(body="second"),
             transitions={"succeeded": "CHECK_FIRST", "aborted": "LET_GO"},
             remapping={"place_pose": "top_pose", "hover_offset": "hover_offset"},
         )
 
-        # main.yml:89
         # The second block must not have moved the first.
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:89
             "CHECK_FIRST",
             CheckPlacedState(body="first"),
             transitions={"succeeded": "GO_HOME", "aborted": "LET_GO"},
             remapping={"pose": "goal_pose", "error": "first_error"},
         )
 
-        # main.yml:96
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:96
             "GO_HOME",
             MoveToJointPositionsState(),
-            transitions={
-                "succeeded": "succeeded",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "succeeded", "aborted": "aborted", "preempted": "aborted"},
             remapping={"positions": "home"},
         )
 
-        # main.yml:102
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:102
             "LET_GO",
             GripperState(command="open"),
-            transitions={
-                "succeeded": "RETREAT",
-                "aborted": "RETREAT",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "RETREAT", "aborted": "RETREAT", "preempted": "aborted"},
             remapping={"width": "gripper_width"},
         )
 
-        # main.yml:108
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:108
             "RETREAT",
             MoveToJointPositionsState(),
-            transitions={
-                "succeeded": "aborted",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "aborted", "aborted": "aborted", "preempted": "aborted"},
             remapping={"positions": "home"},
         )
+    pass_on_stop_requests(stacking)
     return stacking
 
 
@@ -381,47 +325,30 @@ def build_pick_block(body):
     Grasp a block from above and lift it.
     """
     sm_pick_block = smach.StateMachine(
-        outcomes=["succeeded", "aborted"],
-        input_keys=["pick_pose", "hover_offset"],
+        outcomes=["succeeded", "aborted"], input_keys=["pick_pose", "hover_offset"]
     )
     with sm_pick_block:
-        # pick_block.yml:8
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:8
             "OPEN_GRIPPER",
             GripperState(command="open"),
-            transitions={
-                "succeeded": "PLAN_HOVER",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "PLAN_HOVER", "aborted": "aborted", "preempted": "aborted"},
         )
 
-        # pick_block.yml:13
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:13
             "PLAN_HOVER",
             PoseToJointPositionsState(grasp=True),
             transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
-            remapping={
-                "pose": "pick_pose",
-                "offset": "hover_offset",
-                "joints": "hover_joints",
-            },
+            remapping={"pose": "pick_pose", "offset": "hover_offset", "joints": "hover_joints"},
         )
 
-        # pick_block.yml:19
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:19
             "MOVE_TO_HOVER",
             MoveToJointPositionsState(),
-            transitions={
-                "succeeded": "MOVE_DOWN",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "MOVE_DOWN", "aborted": "aborted", "preempted": "aborted"},
             remapping={"positions": "hover_joints"},
         )
 
-        # pick_block.yml:24
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:24
             "MOVE_DOWN",
             MoveAlongState(grasp=True),
             transitions={
@@ -432,31 +359,20 @@ def build_pick_block(body):
             remapping={"pose": "pick_pose"},
         )
 
-        # pick_block.yml:30
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:30
             "CLOSE_GRIPPER",
             GripperState(command="close"),
-            transitions={
-                "succeeded": "LIFT",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "LIFT", "aborted": "aborted", "preempted": "aborted"},
         )
 
-        # pick_block.yml:35
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:35
             "LIFT",
             MoveAlongState(grasp=True),
-            transitions={
-                "succeeded": "CHECK_GRASP",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "CHECK_GRASP", "aborted": "aborted", "preempted": "aborted"},
             remapping={"pose": "pick_pose", "offset": "hover_offset"},
         )
 
-        # pick_block.yml:41
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:41
             "CHECK_GRASP",
             CheckGraspState(body=body),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},
@@ -470,43 +386,30 @@ def build_place_block(body):
     Place the block in the gripper and look whether it lies there.
     """
     sm_place_block = smach.StateMachine(
-        outcomes=["succeeded", "aborted"],
-        input_keys=["place_pose", "hover_offset"],
+        outcomes=["succeeded", "aborted"], input_keys=["place_pose", "hover_offset"]
     )
     with sm_place_block:
-        # place_block.yml:9
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:9
             "PLAN_HOVER",
             PoseToJointPositionsState(grasp=True),
             transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
-            remapping={
-                "pose": "place_pose",
-                "offset": "hover_offset",
-                "joints": "hover_joints",
-            },
+            remapping={"pose": "place_pose", "offset": "hover_offset", "joints": "hover_joints"},
         )
 
-        # place_block.yml:15
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:15
             "MOVE_TO_HOVER",
             MoveToJointPositionsState(),
-            transitions={
-                "succeeded": "CHECK_GRASP",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "CHECK_GRASP", "aborted": "aborted", "preempted": "aborted"},
             remapping={"positions": "hover_joints"},
         )
 
-        # place_block.yml:20
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:20
             "CHECK_GRASP",
             CheckGraspState(body=body),
             transitions={"succeeded": "MOVE_DOWN", "aborted": "aborted"},
         )
 
-        # place_block.yml:25
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:25
             "MOVE_DOWN",
             MoveAlongState(grasp=True),
             transitions={
@@ -517,19 +420,13 @@ def build_place_block(body):
             remapping={"pose": "place_pose"},
         )
 
-        # place_block.yml:31
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:31
             "OPEN_GRIPPER",
             GripperState(command="open"),
-            transitions={
-                "succeeded": "MOVE_UP",
-                "aborted": "aborted",
-                "preempted": "aborted",
-            },
+            transitions={"succeeded": "MOVE_UP", "aborted": "aborted", "preempted": "aborted"},
         )
 
-        # place_block.yml:36
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:36
             "MOVE_UP",
             MoveAlongState(grasp=True),
             transitions={
@@ -540,8 +437,7 @@ def build_place_block(body):
             remapping={"pose": "place_pose", "offset": "hover_offset"},
         )
 
-        # place_block.yml:42
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:42
             "CHECK_PLACED",
             CheckPlacedState(body=body),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},

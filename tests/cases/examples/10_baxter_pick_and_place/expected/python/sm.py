@@ -2,6 +2,7 @@
 """The state machine `sm`."""
 
 from smachac import sim
+from smachac.runtime.additions import pass_on_stop_requests
 from smachac.sim.gazebo import model_of
 
 try:
@@ -26,21 +27,6 @@ def optional(userdata, key):
     if key in userdata:
         return userdata[key]
     return None
-
-
-def stoppable_again(machine):
-    """Let a machine pass on a second stop request while the same container in it runs."""
-    request, children = machine.request_preempt, machine.get_children
-
-    def request_preempt():
-        again = machine.preempt_requested() and getattr(smach, "compat", True)
-        request()
-        for label in machine.get_active_states() if again else ():
-            if hasattr(children().get(label), "get_children"):
-                children()[label].request_preempt()
-
-    machine.request_preempt = request_preempt
-    return machine
 
 
 class LoadGazeboModelState(smach.State):
@@ -116,17 +102,11 @@ class PoseToJointTrajServiceState(smach.State):
 
 def build():
     """Build the state machine `sm`."""
-    # main.yml:2
-    sm = stoppable_again(
-        smach.StateMachine(outcomes=["succeeded", "aborted", "preempted"]),
-    )
+    sm = smach.StateMachine(outcomes=["succeeded", "aborted", "preempted"])  # main.yml:2
     sm.userdata.hover_offset = [[0.0, 0.0, 0.15], [0.0, 0.0, 0.0, 1.0]]
     sm.userdata.table_model_pose_world = Pose(position=Point(x=1.0, y=0.0, z=0.0))
     sm.userdata.table_model_ref_frame = "world"
-    sm.userdata.block_model_pick_pose_world = [
-        [0.6725, 0.1265, 0.7825],
-        [0.0, 0.0, 0.0, 1.0],
-    ]
+    sm.userdata.block_model_pick_pose_world = [[0.6725, 0.1265, 0.7825], [0.0, 0.0, 0.0, 1.0]]
     sm.userdata.block_model_pick_ref_frame = "world"
     sm.userdata.block_model_pick_pose = [
         [0.7, 0.15, -0.129],
@@ -136,18 +116,9 @@ def build():
         [0.75, 0.0, -0.129],
         [-0.02496, 0.99965, 0.00738, 0.00486],
     ]
-    sm.userdata.joint_start_positions = [
-        -0.08,
-        -0.99998,
-        -1.18997,
-        1.94002,
-        0.67,
-        1.03001,
-        -0.5,
-    ]
+    sm.userdata.joint_start_positions = [-0.08, -0.99998, -1.18997, 1.94002, 0.67, 1.03001, -0.5]
     with sm:
-        # main.yml:9
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:9
             "LOAD_TABLE_MODEL",
             LoadGazeboModelState(
                 model_name="cafe_table",
@@ -160,8 +131,7 @@ def build():
             },
         )
 
-        # main.yml:21
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:21
             "LOAD_BLOCK_MODEL",
             LoadGazeboModelState(
                 model_name="block",
@@ -174,8 +144,7 @@ def build():
             },
         )
 
-        # main.yml:38
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:38
             "MOVE_TO_START_POSITION",
             MoveToJointPositionsState(limb="left"),
             transitions={
@@ -186,8 +155,7 @@ def build():
             remapping={"positions": "joint_start_positions"},
         )
 
-        # main.yml:46
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:46
             "PICK_BLOCK",
             build_pick_block(),
             transitions={
@@ -195,38 +163,26 @@ def build():
                 "aborted": "aborted",
                 "preempted": "preempted",
             },
-            remapping={
-                "pick_pose": "block_model_pick_pose",
-                "hover_offset": "hover_offset",
-            },
+            remapping={"pick_pose": "block_model_pick_pose", "hover_offset": "hover_offset"},
         )
 
-        # main.yml:52
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:52
             "PLACE_BLOCK",
             build_place_block(),
-            transitions={
-                "succeeded": "succeeded",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
-            remapping={
-                "place_pose": "block_model_place_pose",
-                "hover_offset": "hover_offset",
-            },
+            transitions={"succeeded": "succeeded", "aborted": "aborted", "preempted": "preempted"},
+            remapping={"place_pose": "block_model_place_pose", "hover_offset": "hover_offset"},
         )
+    pass_on_stop_requests(sm)
     return sm
 
 
 def build_pick_block():
     """Build the state machine of `pick_block.yml`."""
     sm_pick_block = smach.StateMachine(
-        outcomes=["succeeded", "aborted", "preempted"],
-        input_keys=["pick_pose", "hover_offset"],
+        outcomes=["succeeded", "aborted", "preempted"], input_keys=["pick_pose", "hover_offset"]
     )
     with sm_pick_block:
-        # pick_block.yml:7
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:7
             "OPEN_GRIPPER",
             GripperInterfaceState(limb="left", command="open"),
             transitions={
@@ -236,20 +192,14 @@ def build_pick_block():
             },
         )
 
-        # pick_block.yml:13
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:13
             "PLAN_HOVER",
             PoseToJointTrajServiceState(limb="left"),
             transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
-            remapping={
-                "poses": "pick_pose",
-                "offsets": "hover_offset",
-                "joints": "hover_joints",
-            },
+            remapping={"poses": "pick_pose", "offsets": "hover_offset", "joints": "hover_joints"},
         )
 
-        # pick_block.yml:19
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:19
             "MOVE_TO_HOVER",
             MoveToJointPositionsState(limb="left"),
             transitions={
@@ -260,16 +210,14 @@ def build_pick_block():
             remapping={"positions": "hover_joints"},
         )
 
-        # pick_block.yml:25
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:25
             "PLAN_GRASP",
             PoseToJointTrajServiceState(limb="left"),
             transitions={"succeeded": "MOVE_TO_GRASP", "aborted": "aborted"},
             remapping={"poses": "pick_pose", "joints": "grasp_joints"},
         )
 
-        # pick_block.yml:31
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:31
             "MOVE_TO_GRASP",
             MoveToJointPositionsState(limb="left"),
             transitions={
@@ -280,26 +228,16 @@ def build_pick_block():
             remapping={"positions": "grasp_joints"},
         )
 
-        # pick_block.yml:37
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:37
             "CLOSE_GRIPPER",
             GripperInterfaceState(limb="left", command="close"),
-            transitions={
-                "succeeded": "LIFT",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "LIFT", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # pick_block.yml:43
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:43
             "LIFT",
             MoveToJointPositionsState(limb="left"),
-            transitions={
-                "succeeded": "succeeded",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "succeeded", "aborted": "aborted", "preempted": "preempted"},
             remapping={"positions": "hover_joints"},
         )
     return sm_pick_block
@@ -308,24 +246,17 @@ def build_pick_block():
 def build_place_block():
     """Build the state machine of `place_block.yml`."""
     sm_place_block = smach.StateMachine(
-        outcomes=["succeeded", "aborted", "preempted"],
-        input_keys=["place_pose", "hover_offset"],
+        outcomes=["succeeded", "aborted", "preempted"], input_keys=["place_pose", "hover_offset"]
     )
     with sm_place_block:
-        # place_block.yml:7
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:7
             "PLAN_HOVER",
             PoseToJointTrajServiceState(limb="left"),
             transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
-            remapping={
-                "poses": "place_pose",
-                "offsets": "hover_offset",
-                "joints": "hover_joints",
-            },
+            remapping={"poses": "place_pose", "offsets": "hover_offset", "joints": "hover_joints"},
         )
 
-        # place_block.yml:13
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:13
             "MOVE_TO_HOVER",
             MoveToJointPositionsState(limb="left"),
             transitions={
@@ -336,16 +267,14 @@ def build_place_block():
             remapping={"positions": "hover_joints"},
         )
 
-        # place_block.yml:19
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:19
             "PLAN_PLACE",
             PoseToJointTrajServiceState(limb="left"),
             transitions={"succeeded": "MOVE_TO_PLACE", "aborted": "aborted"},
             remapping={"poses": "place_pose", "joints": "place_joints"},
         )
 
-        # place_block.yml:25
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:25
             "MOVE_TO_PLACE",
             MoveToJointPositionsState(limb="left"),
             transitions={
@@ -356,26 +285,16 @@ def build_place_block():
             remapping={"positions": "place_joints"},
         )
 
-        # place_block.yml:31
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:31
             "OPEN_GRIPPER",
             GripperInterfaceState(limb="left", command="open"),
-            transitions={
-                "succeeded": "MOVE_UP",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "MOVE_UP", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # place_block.yml:37
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:37
             "MOVE_UP",
             MoveToJointPositionsState(limb="left"),
-            transitions={
-                "succeeded": "succeeded",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "succeeded", "aborted": "aborted", "preempted": "preempted"},
             remapping={"positions": "hover_joints"},
         )
     return sm_place_block

@@ -2,6 +2,7 @@
 """Stack two blocks on the mark."""
 
 from smachac import sim
+from smachac.runtime.additions import pass_on_stop_requests
 
 try:
     import smach
@@ -26,27 +27,10 @@ def optional(userdata, key):
     return None
 
 
-def stoppable_again(machine):
-    """Let a machine pass on a second stop request while the same container in it runs."""
-    request, children = machine.request_preempt, machine.get_children
-
-    def request_preempt():
-        again = machine.preempt_requested() and getattr(smach, "compat", True)
-        request()
-        for label in machine.get_active_states() if again else ():
-            if hasattr(children().get(label), "get_children"):
-                children()[label].request_preempt()
-
-    machine.request_preempt = request_preempt
-    return machine
-
-
 class LoadModelState(smach.State):
     """Adds a model to the simulated world."""
 
-    def __init__(
-        self, model_name, model_path=None, body=None, spread=(0, 0, 0), apart=None
-    ):
+    def __init__(self, model_name, model_path=None, body=None, spread=(0, 0, 0), apart=None):
         super().__init__(
             outcomes=["succeeded", "aborted"],
             input_keys=["pose", "reference_frame"],
@@ -208,9 +192,8 @@ class CheckPlacedState(smach.State):
 
 def build():
     """Build the state machine `baxter_stacking`."""
-    # main.yml:2
-    baxter_stacking = stoppable_again(
-        smach.StateMachine(outcomes=["succeeded", "aborted", "preempted"]),
+    baxter_stacking = smach.StateMachine(  # main.yml:2
+        outcomes=["succeeded", "aborted", "preempted"]
     )
     baxter_stacking.userdata.hover_offset = [[0.0, 0.0, 0.12], [0.0, 0.0, 0.0, 1.0]]
     baxter_stacking.userdata.table_pose = [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
@@ -219,28 +202,21 @@ def build():
     baxter_stacking.userdata.second_pose = [[0.665, 0.15, -0.13], [0.0, 0.0, 0.0, 1.0]]
     baxter_stacking.userdata.goal_pose = [[0.665, 0.15, -0.13], [0.0, 0.0, 0.0, 1.0]]
     with baxter_stacking:
-        # main.yml:11
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:11
             "LOAD_TABLE",
             LoadModelState(model_name="cafe_table"),
             transitions={"succeeded": "LOAD_FIRST", "aborted": "aborted"},
             remapping={"pose": "table_pose", "reference_frame": "table_frame"},
         )
 
-        # main.yml:20
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:20
             "LOAD_FIRST",
-            LoadModelState(
-                model_name="block",
-                body="first",
-                spread=[0.08, 0.2, 3.1416],
-            ),
+            LoadModelState(model_name="block", body="first", spread=[0.08, 0.2, 3.1416]),
             transitions={"succeeded": "LOAD_SECOND", "aborted": "aborted"},
             remapping={"pose": "first_pose"},
         )
 
-        # main.yml:30
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:30
             "LOAD_SECOND",
             LoadModelState(
                 model_name="block",
@@ -252,30 +228,22 @@ def build():
             remapping={"pose": "second_pose"},
         )
 
-        # main.yml:41
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:41
             "LOAD_MARK",
             LoadModelState(
-                model_name="goal",
-                spread=[0.08, 0.2, 0.0],
-                apart={"first": 0.13, "second": 0.13},
+                model_name="goal", spread=[0.08, 0.2, 0.0], apart={"first": 0.13, "second": 0.13}
             ),
             transitions={"succeeded": "PLAN_STACK", "aborted": "aborted"},
             remapping={"pose": "goal_pose"},
         )
 
-        # main.yml:51
         # The second block goes on top of the first, one edge length (0.05 m) higher.
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:51
             "PLAN_STACK",
             CallbacksState(
                 callbacks={
                     "top_pose": lambda ud: [
-                        [
-                            ud.goal_pose[0][0],
-                            ud.goal_pose[0][1],
-                            ud.goal_pose[0][2] + 0.05,
-                        ],
+                        [ud.goal_pose[0][0], ud.goal_pose[0][1], ud.goal_pose[0][2] + 0.05],
                         ud.goal_pose[1],
                     ],
                 },
@@ -285,8 +253,7 @@ def build():
             transitions={"succeeded": "PICK_AND_PLACE_FIRST"},
         )
 
-        # main.yml:60
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:60
             "PICK_AND_PLACE_FIRST",
             build_pick_and_place(body="first"),
             transitions={
@@ -301,8 +268,7 @@ def build():
             },
         )
 
-        # main.yml:66
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:66
             "PICK_AND_PLACE_SECOND",
             build_pick_and_place(body="second"),
             transitions={
@@ -317,26 +283,21 @@ def build():
             },
         )
 
-        # main.yml:72
         # The second block must not have moved the first.
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:72
             "CHECK_FIRST",
             CheckPlacedState(body="first", tolerance=0.001),
             transitions={"succeeded": "succeeded", "aborted": "LET_GO"},
             remapping={"pose": "goal_pose", "error": "first_error"},
         )
 
-        # main.yml:81
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:81
             "LET_GO",
             GripperState(limb="left", command="open"),
-            transitions={
-                "succeeded": "aborted",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "aborted", "aborted": "aborted", "preempted": "preempted"},
             remapping={"width": "gripper_width"},
         )
+    pass_on_stop_requests(baxter_stacking)
     return baxter_stacking
 
 
@@ -345,15 +306,12 @@ def build_pick_and_place(body):
 
     Pick a block up and place it.
     """
-    sm_pick_and_place = stoppable_again(
-        smach.StateMachine(
-            outcomes=["succeeded", "aborted", "preempted"],
-            input_keys=["pick_pose", "place_pose", "hover_offset"],
-        ),
+    sm_pick_and_place = smach.StateMachine(
+        outcomes=["succeeded", "aborted", "preempted"],
+        input_keys=["pick_pose", "place_pose", "hover_offset"],
     )
     with sm_pick_and_place:
-        # pick_and_place.yml:8
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_and_place.yml:8
             "PICK_BLOCK",
             build_pick_block(body=body),
             transitions={
@@ -363,15 +321,10 @@ def build_pick_and_place(body):
             },
         )
 
-        # pick_and_place.yml:12
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_and_place.yml:12
             "PLACE_BLOCK",
             build_place_block(body=body),
-            transitions={
-                "succeeded": "succeeded",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "succeeded", "aborted": "aborted", "preempted": "preempted"},
         )
     return sm_pick_and_place
 
@@ -382,12 +335,10 @@ def build_pick_block(body):
     Grasp a block from above and lift it.
     """
     sm_pick_block = smach.StateMachine(
-        outcomes=["succeeded", "aborted", "preempted"],
-        input_keys=["pick_pose", "hover_offset"],
+        outcomes=["succeeded", "aborted", "preempted"], input_keys=["pick_pose", "hover_offset"]
     )
     with sm_pick_block:
-        # pick_block.yml:8
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:8
             "OPEN_GRIPPER",
             GripperState(limb="left", command="open"),
             transitions={
@@ -397,32 +348,21 @@ def build_pick_block(body):
             },
         )
 
-        # pick_block.yml:14
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:14
             "PLAN_HOVER",
             PoseToJointPositionsState(limb="left", grasp=True),
             transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
-            remapping={
-                "pose": "pick_pose",
-                "offset": "hover_offset",
-                "joints": "hover_joints",
-            },
+            remapping={"pose": "pick_pose", "offset": "hover_offset", "joints": "hover_joints"},
         )
 
-        # pick_block.yml:21
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:21
             "MOVE_TO_HOVER",
             MoveToJointPositionsState(limb="left"),
-            transitions={
-                "succeeded": "MOVE_DOWN",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "MOVE_DOWN", "aborted": "aborted", "preempted": "preempted"},
             remapping={"positions": "hover_joints"},
         )
 
-        # pick_block.yml:27
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:27
             "MOVE_DOWN",
             MoveAlongState(limb="left", grasp=True),
             transitions={
@@ -433,19 +373,13 @@ def build_pick_block(body):
             remapping={"pose": "pick_pose"},
         )
 
-        # pick_block.yml:34
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:34
             "CLOSE_GRIPPER",
             GripperState(limb="left", command="close"),
-            transitions={
-                "succeeded": "LIFT",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "LIFT", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # pick_block.yml:40
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:40
             "LIFT",
             MoveAlongState(limb="left", grasp=True),
             transitions={
@@ -456,8 +390,7 @@ def build_pick_block(body):
             remapping={"pose": "pick_pose", "offset": "hover_offset"},
         )
 
-        # pick_block.yml:47
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:47
             "CHECK_GRASP",
             CheckGraspState(limb="left", body=body),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},
@@ -471,36 +404,24 @@ def build_place_block(body):
     Place the block in the gripper and check where it lies.
     """
     sm_place_block = smach.StateMachine(
-        outcomes=["succeeded", "aborted", "preempted"],
-        input_keys=["place_pose", "hover_offset"],
+        outcomes=["succeeded", "aborted", "preempted"], input_keys=["place_pose", "hover_offset"]
     )
     with sm_place_block:
-        # place_block.yml:9
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:9
             "PLAN_HOVER",
             PoseToJointPositionsState(limb="left", grasp=True),
             transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
-            remapping={
-                "pose": "place_pose",
-                "offset": "hover_offset",
-                "joints": "hover_joints",
-            },
+            remapping={"pose": "place_pose", "offset": "hover_offset", "joints": "hover_joints"},
         )
 
-        # place_block.yml:16
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:16
             "MOVE_TO_HOVER",
             MoveToJointPositionsState(limb="left"),
-            transitions={
-                "succeeded": "MOVE_DOWN",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "MOVE_DOWN", "aborted": "aborted", "preempted": "preempted"},
             remapping={"positions": "hover_joints"},
         )
 
-        # place_block.yml:22
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:22
             "MOVE_DOWN",
             MoveAlongState(limb="left", grasp=True),
             transitions={
@@ -511,19 +432,13 @@ def build_place_block(body):
             remapping={"pose": "place_pose"},
         )
 
-        # place_block.yml:29
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:29
             "OPEN_GRIPPER",
             GripperState(limb="left", command="open"),
-            transitions={
-                "succeeded": "MOVE_UP",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "MOVE_UP", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # place_block.yml:35
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:35
             "MOVE_UP",
             MoveAlongState(limb="left", grasp=True),
             transitions={
@@ -534,8 +449,7 @@ def build_place_block(body):
             remapping={"pose": "place_pose", "offset": "hover_offset"},
         )
 
-        # place_block.yml:42
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:42
             "CHECK_PLACED",
             CheckPlacedState(body=body, tolerance=0.001),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},

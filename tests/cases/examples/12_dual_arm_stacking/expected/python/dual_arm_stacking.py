@@ -2,6 +2,7 @@
 """Pick two blocks with both arms at once and stack them on the mark."""
 
 from smachac import sim
+from smachac.runtime.additions import pass_on_stop_requests
 
 try:
     import smach
@@ -24,82 +25,6 @@ def optional(userdata, key):
     if key in userdata:
         return userdata[key]
     return None
-
-
-def withdraw(state):
-    """Take back the unanswered stop requests of a state and of the states inside."""
-    if state.preempt_requested():
-        state.recall_preempt()
-        for child in getattr(state, "get_children", dict)().values():
-            withdraw(child)
-
-
-def stoppable(container):
-    """Let a container pass on every stop request, also an early one and a second one."""
-    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
-        return container
-    run, request = container.execute, container.request_preempt
-    children = container.get_children
-    concurrent = isinstance(container, smach.Concurrence)
-    container.busy = container.asked = False
-
-    def pass_on():
-        for label in container.get_active_states() or list(children()):
-            child = children().get(label)
-            again = hasattr(child, "get_children")
-            if child and (again or not child.preempt_requested()):
-                child.request_preempt()
-
-    def request_preempt():
-        if not container.busy:
-            return request()
-        container.asked = True
-        if not concurrent:
-            smach.State.request_preempt(container)
-        pass_on()
-
-    def execute(*userdata):
-        container.busy, container.asked = True, container.preempt_requested()
-        if container.asked:
-            pass_on()
-        if concurrent:  # with its own request, SMACH for ROS 1 ends as preempted
-            container.service_preempt()
-        unanswered = True
-        try:
-            outcome = run(*userdata)
-            unanswered = any(child.preempt_requested() for child in children().values())
-            return outcome
-        finally:
-            container.busy = False
-            for child in children().values():
-                withdraw(child)
-            if concurrent and container.asked and unanswered:
-                request()
-
-    if concurrent and container._child_termination_cb:
-        ends = container._child_termination_cb
-
-        def ends_others(outcomes):
-            return not container.asked and ends(outcomes)
-
-        container._child_termination_cb = ends_others
-    container.execute, container.request_preempt = execute, request_preempt
-    return container
-
-
-def stoppable_again(machine):
-    """Let a machine pass on a second stop request while the same container in it runs."""
-    request, children = machine.request_preempt, machine.get_children
-
-    def request_preempt():
-        again = machine.preempt_requested() and getattr(smach, "compat", True)
-        request()
-        for label in machine.get_active_states() if again else ():
-            if hasattr(children().get(label), "get_children"):
-                children()[label].request_preempt()
-
-    machine.request_preempt = request_preempt
-    return machine
 
 
 class ReadBodyPoseState(smach.State):
@@ -259,9 +184,8 @@ class CheckPlacedState(smach.State):
 
 def build():
     """Build the state machine `dual_arm_stacking`."""
-    # main.yml:2
-    dual_arm_stacking = stoppable_again(
-        smach.StateMachine(outcomes=["succeeded", "aborted", "preempted"]),
+    dual_arm_stacking = smach.StateMachine(  # main.yml:2
+        outcomes=["succeeded", "aborted", "preempted"]
     )
     dual_arm_stacking.userdata.left_home = [
         -0.08,
@@ -272,53 +196,37 @@ def build():
         1.03001,
         -0.5,
     ]
-    dual_arm_stacking.userdata.right_home = [
-        0.08,
-        -0.99998,
-        1.18997,
-        1.94002,
-        -0.67,
-        1.03001,
-        0.5,
-    ]
+    dual_arm_stacking.userdata.right_home = [0.08, -0.99998, 1.18997, 1.94002, -0.67, 1.03001, 0.5]
     dual_arm_stacking.userdata.hover_offset = [[0.0, 0.0, 0.12], [0.0, 0.0, 0.0, 1.0]]
     with dual_arm_stacking:
-        # main.yml:14
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:14
             "FIND_FIRST",
             ReadBodyPoseState(body="first"),
             transitions={"succeeded": "FIND_SECOND", "aborted": "aborted"},
             remapping={"pose": "first_pose"},
         )
 
-        # main.yml:20
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:20
             "FIND_SECOND",
             ReadBodyPoseState(body="second"),
             transitions={"succeeded": "FIND_MARK", "aborted": "aborted"},
             remapping={"pose": "second_pose"},
         )
 
-        # main.yml:26
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:26
             "FIND_MARK",
             ReadBodyPoseState(body="mark"),
             transitions={"succeeded": "PLAN_STACK", "aborted": "aborted"},
             remapping={"pose": "goal_pose"},
         )
 
-        # main.yml:32
         # The second block goes on top of the first, one edge length (0.05 m) higher.
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:32
             "PLAN_STACK",
             CallbacksState(
                 callbacks={
                     "top_pose": lambda ud: [
-                        [
-                            ud.goal_pose[0][0],
-                            ud.goal_pose[0][1],
-                            ud.goal_pose[0][2] + 0.05,
-                        ],
+                        [ud.goal_pose[0][0], ud.goal_pose[0][1], ud.goal_pose[0][2] + 0.05],
                         ud.goal_pose[1],
                     ],
                 },
@@ -328,31 +236,21 @@ def build():
             transitions={"succeeded": "PICK_BLOCKS"},
         )
 
-        # main.yml:41
         # Both arms move at the same time in one world.
-        sm_pick_blocks = stoppable(
-            smach.Concurrence(
-                outcomes=["succeeded", "aborted"],
-                default_outcome="aborted",
-                input_keys=["first_pose", "second_pose", "hover_offset"],
-                outcome_map={
-                    "succeeded": {
-                        "PICK_FIRST": "succeeded",
-                        "PICK_SECOND": "succeeded",
-                    },
-                },
-            ),
+        sm_pick_blocks = smach.Concurrence(  # main.yml:41
+            outcomes=["succeeded", "aborted"],
+            default_outcome="aborted",
+            input_keys=["first_pose", "second_pose", "hover_offset"],
+            outcome_map={"succeeded": {"PICK_FIRST": "succeeded", "PICK_SECOND": "succeeded"}},
         )
         with sm_pick_blocks:
-            # main.yml:50
-            smach.Concurrence.add(
+            smach.Concurrence.add(  # main.yml:50
                 "PICK_FIRST",
                 build_pick_block(limb="left", body="first"),
                 remapping={"pick_pose": "first_pose", "hover_offset": "hover_offset"},
             )
 
-            # main.yml:55
-            smach.Concurrence.add(
+            smach.Concurrence.add(  # main.yml:55
                 "PICK_SECOND",
                 build_pick_block(limb="right", body="second"),
                 remapping={"pick_pose": "second_pose", "hover_offset": "hover_offset"},
@@ -364,8 +262,7 @@ def build():
             transitions={"succeeded": "PLACE_FIRST", "aborted": "LET_GO_LEFT"},
         )
 
-        # main.yml:60
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:60
             "PLACE_FIRST",
             build_place_block(limb="left", body="first"),
             transitions={
@@ -376,8 +273,7 @@ def build():
             remapping={"place_pose": "goal_pose", "hover_offset": "hover_offset"},
         )
 
-        # main.yml:66
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:66
             "LEFT_HOME",
             MoveToJointPositionsState(limb="left"),
             transitions={
@@ -388,8 +284,7 @@ def build():
             remapping={"positions": "left_home"},
         )
 
-        # main.yml:72
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:72
             "PLACE_SECOND",
             build_place_block(limb="right", body="second"),
             transitions={
@@ -400,8 +295,7 @@ def build():
             remapping={"place_pose": "top_pose", "hover_offset": "hover_offset"},
         )
 
-        # main.yml:78
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:78
             "RIGHT_HOME",
             MoveToJointPositionsState(limb="right"),
             transitions={
@@ -412,17 +306,15 @@ def build():
             remapping={"positions": "right_home"},
         )
 
-        # main.yml:84
         # The second block must not have moved the first.
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:84
             "CHECK_FIRST",
             CheckPlacedState(body="first", tolerance=0.001),
             transitions={"succeeded": "succeeded", "aborted": "LET_GO_LEFT"},
             remapping={"pose": "goal_pose", "error": "first_error"},
         )
 
-        # main.yml:93
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:93
             "LET_GO_LEFT",
             GripperState(limb="left", command="open"),
             transitions={
@@ -433,17 +325,13 @@ def build():
             remapping={"width": "left_width"},
         )
 
-        # main.yml:100
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:100
             "LET_GO_RIGHT",
             GripperState(limb="right", command="open"),
-            transitions={
-                "succeeded": "aborted",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "aborted", "aborted": "aborted", "preempted": "preempted"},
             remapping={"width": "right_width"},
         )
+    pass_on_stop_requests(dual_arm_stacking)
     return dual_arm_stacking
 
 
@@ -453,12 +341,10 @@ def build_pick_block(limb, body):
     Grasp a block from above and lift it.
     """
     sm_pick_block = smach.StateMachine(
-        outcomes=["succeeded", "aborted", "preempted"],
-        input_keys=["pick_pose", "hover_offset"],
+        outcomes=["succeeded", "aborted", "preempted"], input_keys=["pick_pose", "hover_offset"]
     )
     with sm_pick_block:
-        # pick_block.yml:8
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:8
             "OPEN_GRIPPER",
             GripperState(limb=limb, command="open"),
             transitions={
@@ -468,32 +354,21 @@ def build_pick_block(limb, body):
             },
         )
 
-        # pick_block.yml:14
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:14
             "PLAN_HOVER",
             PoseToJointPositionsState(limb=limb, grasp=True),
             transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
-            remapping={
-                "pose": "pick_pose",
-                "offset": "hover_offset",
-                "joints": "hover_joints",
-            },
+            remapping={"pose": "pick_pose", "offset": "hover_offset", "joints": "hover_joints"},
         )
 
-        # pick_block.yml:21
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:21
             "MOVE_TO_HOVER",
             MoveToJointPositionsState(limb=limb),
-            transitions={
-                "succeeded": "MOVE_DOWN",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "MOVE_DOWN", "aborted": "aborted", "preempted": "preempted"},
             remapping={"positions": "hover_joints"},
         )
 
-        # pick_block.yml:27
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:27
             "MOVE_DOWN",
             MoveAlongState(limb=limb, grasp=True),
             transitions={
@@ -504,19 +379,13 @@ def build_pick_block(limb, body):
             remapping={"pose": "pick_pose"},
         )
 
-        # pick_block.yml:34
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:34
             "CLOSE_GRIPPER",
             GripperState(limb=limb, command="close"),
-            transitions={
-                "succeeded": "LIFT",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "LIFT", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # pick_block.yml:40
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:40
             "LIFT",
             MoveAlongState(limb=limb, grasp=True),
             transitions={
@@ -527,8 +396,7 @@ def build_pick_block(limb, body):
             remapping={"pose": "pick_pose", "offset": "hover_offset"},
         )
 
-        # pick_block.yml:47
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:47
             "CHECK_GRASP",
             CheckGraspState(limb=limb, body=body),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},
@@ -542,36 +410,24 @@ def build_place_block(limb, body):
     Place the block in the gripper and check where it lies.
     """
     sm_place_block = smach.StateMachine(
-        outcomes=["succeeded", "aborted", "preempted"],
-        input_keys=["place_pose", "hover_offset"],
+        outcomes=["succeeded", "aborted", "preempted"], input_keys=["place_pose", "hover_offset"]
     )
     with sm_place_block:
-        # place_block.yml:9
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:9
             "PLAN_HOVER",
             PoseToJointPositionsState(limb=limb, grasp=True),
             transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
-            remapping={
-                "pose": "place_pose",
-                "offset": "hover_offset",
-                "joints": "hover_joints",
-            },
+            remapping={"pose": "place_pose", "offset": "hover_offset", "joints": "hover_joints"},
         )
 
-        # place_block.yml:16
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:16
             "MOVE_TO_HOVER",
             MoveToJointPositionsState(limb=limb),
-            transitions={
-                "succeeded": "MOVE_DOWN",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "MOVE_DOWN", "aborted": "aborted", "preempted": "preempted"},
             remapping={"positions": "hover_joints"},
         )
 
-        # place_block.yml:22
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:22
             "MOVE_DOWN",
             MoveAlongState(limb=limb, grasp=True),
             transitions={
@@ -582,19 +438,13 @@ def build_place_block(limb, body):
             remapping={"pose": "place_pose"},
         )
 
-        # place_block.yml:29
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:29
             "OPEN_GRIPPER",
             GripperState(limb=limb, command="open"),
-            transitions={
-                "succeeded": "MOVE_UP",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "MOVE_UP", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # place_block.yml:35
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:35
             "MOVE_UP",
             MoveAlongState(limb=limb, grasp=True),
             transitions={
@@ -605,8 +455,7 @@ def build_place_block(limb, body):
             remapping={"pose": "place_pose", "offset": "hover_offset"},
         )
 
-        # place_block.yml:42
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:42
             "CHECK_PLACED",
             CheckPlacedState(body=body, tolerance=0.001),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},

@@ -1,9 +1,8 @@
 # Made by smachac 0.1.0 from main.yml (sha256 429970c082ff5f57).
 """Pick and place a block in spite of faults."""
 
-import threading
-
 from smachac import sim
+from smachac.runtime.additions import pass_on_stop_requests, with_retries, with_timeout
 
 try:
     import smach
@@ -26,112 +25,6 @@ def optional(userdata, key):
     if key in userdata:
         return userdata[key]
     return None
-
-
-def withdraw(state):
-    """Take back the unanswered stop requests of a state and of the states inside."""
-    if state.preempt_requested():
-        state.recall_preempt()
-        for child in getattr(state, "get_children", dict)().values():
-            withdraw(child)
-
-
-def stoppable(container):
-    """Let a container pass on every stop request, also an early one and a second one."""
-    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
-        return container
-    run, request = container.execute, container.request_preempt
-    children = container.get_children
-    concurrent = isinstance(container, smach.Concurrence)
-    container.busy = container.asked = False
-
-    def pass_on():
-        for label in container.get_active_states() or list(children()):
-            child = children().get(label)
-            again = hasattr(child, "get_children")
-            if child and (again or not child.preempt_requested()):
-                child.request_preempt()
-
-    def request_preempt():
-        if not container.busy:
-            return request()
-        container.asked = True
-        if not concurrent:
-            smach.State.request_preempt(container)
-        pass_on()
-
-    def execute(*userdata):
-        container.busy, container.asked = True, container.preempt_requested()
-        if container.asked:
-            pass_on()
-        if concurrent:  # with its own request, SMACH for ROS 1 ends as preempted
-            container.service_preempt()
-        unanswered = True
-        try:
-            outcome = run(*userdata)
-            unanswered = any(child.preempt_requested() for child in children().values())
-            return outcome
-        finally:
-            container.busy = False
-            for child in children().values():
-                withdraw(child)
-            if concurrent and container.asked and unanswered:
-                request()
-
-    if concurrent and container._child_termination_cb:
-        ends = container._child_termination_cb
-
-        def ends_others(outcomes):
-            return not container.asked and ends(outcomes)
-
-        container._child_termination_cb = ends_others
-    container.execute, container.request_preempt = execute, request_preempt
-    return container
-
-
-def stoppable_again(machine):
-    """Let a machine pass on a second stop request while the same container in it runs."""
-    request, children = machine.request_preempt, machine.get_children
-
-    def request_preempt():
-        again = machine.preempt_requested() and getattr(smach, "compat", True)
-        request()
-        for label in machine.get_active_states() if again else ():
-            if hasattr(children().get(label), "get_children"):
-                children()[label].request_preempt()
-
-    machine.request_preempt = request_preempt
-    return machine
-
-
-def ends_preempted(container):
-    """Let a time limit or loop end as preempted after a request to stop."""
-    run, request = container.execute, container.request_preempt
-    recall = container.recall_preempt
-
-    def request_preempt():
-        container.stopped = True
-        request()
-
-    def recall_preempt():
-        container.stopped = False
-        recall()
-
-    def execute(*userdata):
-        container.stopped = container.stopped or container.preempt_requested()
-        try:
-            outcome = run(*userdata)
-            if container.stopped:
-                container.service_preempt()
-                outcome = "preempted"
-            return outcome
-        finally:
-            container.stopped = False
-
-    container.execute, container.stopped = execute, False
-    container.request_preempt = request_preempt
-    container.recall_preempt = recall_preempt
-    return container
 
 
 class ReadBodyPoseState(smach.State):
@@ -266,76 +159,24 @@ class CheckPlacedState(smach.State):
         return outcome_of(self, result)
 
 
-class SleepState(smach.State):
-    """Waits for `time` seconds: a number, or a function of the userdata.
-
-    A preempt request ends the wait.
-    """
-
-    def __init__(self, time, input_keys=(), outcomes=("succeeded", "preempted")):
-        super().__init__(
-            outcomes=list(outcomes),
-            input_keys=list(input_keys),
-        )
-        self.time = time
-        self.end_of_wait = threading.Event()
-
-    def request_preempt(self):
-        super().request_preempt()
-        self.end_of_wait.set()
-
-    def execute(self, userdata):
-        self.end_of_wait.wait(self.time(userdata) if callable(self.time) else self.time)
-        self.end_of_wait.clear()
-        if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
-            self.service_preempt()
-            return "preempted"
-        return "succeeded"
-
-
 def build():
     """Build the state machine `recovery`."""
-    # main.yml:2
-    recovery = stoppable_again(
-        smach.StateMachine(outcomes=["succeeded", "aborted", "preempted"]),
-    )
-    recovery.userdata.left_home = [
-        -0.08,
-        -0.99998,
-        -1.18997,
-        1.94002,
-        0.67,
-        1.03001,
-        -0.5,
-    ]
-    recovery.userdata.right_home = [
-        0.08,
-        -0.99998,
-        1.18997,
-        1.94002,
-        -0.67,
-        1.03001,
-        0.5,
-    ]
+    recovery = smach.StateMachine(outcomes=["succeeded", "aborted", "preempted"])  # main.yml:2
+    recovery.userdata.left_home = [-0.08, -0.99998, -1.18997, 1.94002, 0.67, 1.03001, -0.5]
+    recovery.userdata.right_home = [0.08, -0.99998, 1.18997, 1.94002, -0.67, 1.03001, 0.5]
     recovery.userdata.hover_offset = [[0.0, 0.0, 0.12], [0.0, 0.0, 0.0, 1.0]]
     with recovery:
-        # main.yml:14
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:14
             "FIND_MARK",
             ReadBodyPoseState(body="mark"),
             transitions={"succeeded": "LEFT", "aborted": "aborted"},
             remapping={"pose": "goal_pose"},
         )
 
-        # main.yml:20
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:20
             "LEFT",
             build_try_arm(limb="left"),
-            transitions={
-                "succeeded": "succeeded",
-                "exhausted": "RIGHT",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "succeeded", "exhausted": "RIGHT", "preempted": "preempted"},
             remapping={
                 "goal_pose": "goal_pose",
                 "hover_offset": "hover_offset",
@@ -343,8 +184,7 @@ def build():
             },
         )
 
-        # main.yml:26
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:26
             "RIGHT",
             build_try_arm(limb="right"),
             transitions={
@@ -358,6 +198,7 @@ def build():
                 "home": "right_home",
             },
         )
+    pass_on_stop_requests(recovery)
     return recovery
 
 
@@ -366,92 +207,27 @@ def build_try_arm(limb):
 
     Pick and place the block with one arm, in at most three tries.
     """
-    sm_try_arm = stoppable_again(
-        smach.StateMachine(
-            outcomes=["succeeded", "exhausted", "preempted"],
-            input_keys=["goal_pose", "hover_offset", "home"],
-        ),
+    sm_try_arm = smach.StateMachine(
+        outcomes=["succeeded", "exhausted", "preempted"],
+        input_keys=["goal_pose", "hover_offset", "home"],
     )
     with sm_try_arm:
-        # try_arm.yml:10
-        smach.StateMachine.add(
-            "TRY",
-            ends_preempted(build_try(limb=limb)),
-            transitions={
-                "succeeded": "HOME",
-                "exhausted": "exhausted",
-                "preempted": "preempted",
-            },
-        )
-
-        # try_arm.yml:45
-        smach.StateMachine.add(
-            "HOME",
-            MoveToJointPositionsState(limb=limb),
-            transitions={
-                "succeeded": "succeeded",
-                "aborted": "exhausted",
-                "preempted": "preempted",
-            },
-            remapping={"positions": "home"},
-        )
-    return sm_try_arm
-
-
-def build_try(limb):
-    """Build the iterator `TRY`."""
-    sm_try = stoppable(
-        smach.Iterator(
-            outcomes=["succeeded", "preempted", "exhausted"],
-            it=[1, 2, 3],
-            it_label="attempt",
-            exhausted_outcome="exhausted",
+        sm_try = smach.StateMachine(  # try_arm.yml:10
+            outcomes=["succeeded", "aborted", "preempted"],
             input_keys=["goal_pose", "hover_offset", "home"],
-            output_keys=[],
-        ),
-    )
-    with sm_try:
-        # try_arm.yml:10
-        sm_try_2 = stoppable_again(
-            smach.StateMachine(
-                outcomes=["succeeded", "aborted", "preempted"],
-                input_keys=["goal_pose", "hover_offset", "home"],
-            ),
         )
-        with sm_try_2:
-            # try_arm.yml:17
-            smach.StateMachine.add(
+        with sm_try:
+            smach.StateMachine.add(  # try_arm.yml:17
                 "FIND_BLOCK",
                 ReadBodyPoseState(body="block"),
                 transitions={"succeeded": "CARRY", "aborted": "LET_GO"},
                 remapping={"pose": "block_pose"},
             )
 
-            # try_arm.yml:23
             # Pick a block up and place it.
-            sm_carry = stoppable(
-                smach.Concurrence(
-                    outcomes=["succeeded", "aborted", "preempted", "timeout"],
-                    default_outcome="timeout",
-                    input_keys=["pick_pose", "place_pose", "hover_offset"],
-                    outcome_map={
-                        "succeeded": {"CARRY": "succeeded", "TIMER": "preempted"},
-                        "aborted": {"CARRY": "aborted", "TIMER": "preempted"},
-                        "preempted": {"CARRY": "preempted", "TIMER": "preempted"},
-                    },
-                    child_termination_cb=lambda outcomes: True,
-                ),
-            )
-            with sm_carry:
-                # try_arm.yml:23
-                smach.Concurrence.add("CARRY", build_pick_and_place(limb=limb))
-
-                # try_arm.yml:23
-                smach.Concurrence.add("TIMER", SleepState(time=20.0))
-
-            smach.StateMachine.add(
+            smach.StateMachine.add(  # try_arm.yml:23
                 "CARRY",
-                ends_preempted(sm_carry),
+                with_timeout(build_pick_and_place(limb=limb), 20.0, "CARRY"),
                 transitions={
                     "succeeded": "succeeded",
                     "aborted": "LET_GO",
@@ -465,8 +241,7 @@ def build_try(limb):
                 },
             )
 
-            # try_arm.yml:32
-            smach.StateMachine.add(
+            smach.StateMachine.add(  # try_arm.yml:32
                 "LET_GO",
                 GripperState(limb=limb, command="open"),
                 transitions={
@@ -477,8 +252,7 @@ def build_try(limb):
                 remapping={"width": "gripper_width"},
             )
 
-            # try_arm.yml:39
-            smach.StateMachine.add(
+            smach.StateMachine.add(  # try_arm.yml:39
                 "RETREAT",
                 MoveToJointPositionsState(limb=limb),
                 transitions={
@@ -489,26 +263,33 @@ def build_try(limb):
                 remapping={"positions": "home"},
             )
 
-        smach.Iterator.set_contained_state(
+        smach.StateMachine.add(
             "TRY",
-            sm_try_2,
-            loop_outcomes=["aborted"],
-            final_outcome_map={"aborted": "preempted"},
+            with_retries(sm_try, 3, on=["aborted"], label="TRY"),
+            transitions={"succeeded": "HOME", "exhausted": "exhausted", "preempted": "preempted"},
         )
-    return sm_try
+
+        smach.StateMachine.add(  # try_arm.yml:45
+            "HOME",
+            MoveToJointPositionsState(limb=limb),
+            transitions={
+                "succeeded": "succeeded",
+                "aborted": "exhausted",
+                "preempted": "preempted",
+            },
+            remapping={"positions": "home"},
+        )
+    return sm_try_arm
 
 
 def build_pick_and_place(limb):
     """Build the state machine of `pick_and_place.yml`."""
-    sm_pick_and_place = stoppable_again(
-        smach.StateMachine(
-            outcomes=["succeeded", "aborted", "preempted"],
-            input_keys=["pick_pose", "place_pose", "hover_offset"],
-        ),
+    sm_pick_and_place = smach.StateMachine(
+        outcomes=["succeeded", "aborted", "preempted"],
+        input_keys=["pick_pose", "place_pose", "hover_offset"],
     )
     with sm_pick_and_place:
-        # pick_and_place.yml:8
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_and_place.yml:8
             "PICK_BLOCK",
             build_pick_block(limb=limb),
             transitions={
@@ -518,15 +299,10 @@ def build_pick_and_place(limb):
             },
         )
 
-        # pick_and_place.yml:12
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_and_place.yml:12
             "PLACE_BLOCK",
             build_place_block(limb=limb),
-            transitions={
-                "succeeded": "succeeded",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "succeeded", "aborted": "aborted", "preempted": "preempted"},
         )
     return sm_pick_and_place
 
@@ -537,12 +313,10 @@ def build_pick_block(limb):
     Grasp a block from above and lift it.
     """
     sm_pick_block = smach.StateMachine(
-        outcomes=["succeeded", "aborted", "preempted"],
-        input_keys=["pick_pose", "hover_offset"],
+        outcomes=["succeeded", "aborted", "preempted"], input_keys=["pick_pose", "hover_offset"]
     )
     with sm_pick_block:
-        # pick_block.yml:8
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:8
             "OPEN_GRIPPER",
             GripperState(limb=limb, command="open"),
             transitions={
@@ -552,32 +326,21 @@ def build_pick_block(limb):
             },
         )
 
-        # pick_block.yml:14
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:14
             "PLAN_HOVER",
             PoseToJointPositionsState(limb=limb, grasp=True),
             transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
-            remapping={
-                "pose": "pick_pose",
-                "offset": "hover_offset",
-                "joints": "hover_joints",
-            },
+            remapping={"pose": "pick_pose", "offset": "hover_offset", "joints": "hover_joints"},
         )
 
-        # pick_block.yml:21
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:21
             "MOVE_TO_HOVER",
             MoveToJointPositionsState(limb=limb),
-            transitions={
-                "succeeded": "MOVE_DOWN",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "MOVE_DOWN", "aborted": "aborted", "preempted": "preempted"},
             remapping={"positions": "hover_joints"},
         )
 
-        # pick_block.yml:27
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:27
             "MOVE_DOWN",
             MoveAlongState(limb=limb, grasp=True),
             transitions={
@@ -588,19 +351,13 @@ def build_pick_block(limb):
             remapping={"pose": "pick_pose"},
         )
 
-        # pick_block.yml:34
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:34
             "CLOSE_GRIPPER",
             GripperState(limb=limb, command="close"),
-            transitions={
-                "succeeded": "LIFT",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "LIFT", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # pick_block.yml:40
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:40
             "LIFT",
             MoveAlongState(limb=limb, grasp=True),
             transitions={
@@ -611,8 +368,7 @@ def build_pick_block(limb):
             remapping={"pose": "pick_pose", "offset": "hover_offset"},
         )
 
-        # pick_block.yml:47
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # pick_block.yml:47
             "CHECK_GRASP",
             CheckGraspState(limb=limb, body="block"),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},
@@ -626,36 +382,24 @@ def build_place_block(limb):
     Place the block in the gripper and check where it lies.
     """
     sm_place_block = smach.StateMachine(
-        outcomes=["succeeded", "aborted", "preempted"],
-        input_keys=["place_pose", "hover_offset"],
+        outcomes=["succeeded", "aborted", "preempted"], input_keys=["place_pose", "hover_offset"]
     )
     with sm_place_block:
-        # place_block.yml:9
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:9
             "PLAN_HOVER",
             PoseToJointPositionsState(limb=limb, grasp=True),
             transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
-            remapping={
-                "pose": "place_pose",
-                "offset": "hover_offset",
-                "joints": "hover_joints",
-            },
+            remapping={"pose": "place_pose", "offset": "hover_offset", "joints": "hover_joints"},
         )
 
-        # place_block.yml:16
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:16
             "MOVE_TO_HOVER",
             MoveToJointPositionsState(limb=limb),
-            transitions={
-                "succeeded": "MOVE_DOWN",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "MOVE_DOWN", "aborted": "aborted", "preempted": "preempted"},
             remapping={"positions": "hover_joints"},
         )
 
-        # place_block.yml:22
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:22
             "MOVE_DOWN",
             MoveAlongState(limb=limb, grasp=True),
             transitions={
@@ -666,19 +410,13 @@ def build_place_block(limb):
             remapping={"pose": "place_pose"},
         )
 
-        # place_block.yml:29
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:29
             "OPEN_GRIPPER",
             GripperState(limb=limb, command="open"),
-            transitions={
-                "succeeded": "MOVE_UP",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "MOVE_UP", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # place_block.yml:35
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:35
             "MOVE_UP",
             MoveAlongState(limb=limb, grasp=True),
             transitions={
@@ -689,8 +427,7 @@ def build_place_block(limb):
             remapping={"pose": "place_pose", "offset": "hover_offset"},
         )
 
-        # place_block.yml:42
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # place_block.yml:42
             "CHECK_PLACED",
             CheckPlacedState(body="block", tolerance=0.001),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},

@@ -724,8 +724,7 @@ class PublishObserverMsgState(smach.State):
 
 def build():
     """Build the state machine `patrol`."""
-    # main.yml:2
-    patrol = smach.StateMachine(outcomes=["succeeded", "aborted", "preempted"])
+    patrol = smach.StateMachine(outcomes=["succeeded", "aborted", "preempted"])  # main.yml:2
     patrol.userdata.order = 3
     patrol.userdata.file = "run.bag"
     patrol.userdata.topics = ["/battery"]
@@ -735,15 +734,13 @@ def build():
     patrol.userdata.target = "map"
     patrol.userdata.source = "base"
     with patrol:
-        # main.yml:19
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:19
             "RECORD",
             RecordROSBagState(ROSBagCLIProcessRecorder, "start"),
             transitions={"succeeded": "COUNT", "aborted": "aborted"},
         )
 
-        # main.yml:23
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:23
             "COUNT",
             smach_ros.SimpleActionState(
                 "count",
@@ -760,23 +757,15 @@ def build():
             },
         )
 
-        # main.yml:32
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:32
             "COUNT_AGAIN",
             smach_ros.SimpleActionState(
-                "count",
-                FibonacciAction,
-                goal=filled(FibonacciGoal(), {"order": 5}),
+                "count", FibonacciAction, goal=filled(FibonacciGoal(), {"order": 5})
             ),
-            transitions={
-                "succeeded": "ENABLE",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "ENABLE", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:38
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:38
             "ENABLE",
             smach_ros.ServiceState(
                 "enable",
@@ -784,26 +773,16 @@ def build():
                 request=filled(SetBoolRequest(), {"data": True}),
                 response_slots=["message"],
             ),
-            transitions={
-                "succeeded": "DOCK",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "DOCK", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:45
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:45
             "DOCK",
             smach_ros.ServiceState("dock", Trigger, request=TriggerRequest()),
-            transitions={
-                "succeeded": "BATTERY",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "BATTERY", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:51
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:51
             "BATTERY",
             WaitForMsgState(
                 "/battery",
@@ -811,42 +790,24 @@ def build():
                 msg_cb=lambda message, userdata: message.data > 0.2,
                 timeout=60,
             ),
-            transitions={
-                "succeeded": "READ",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "READ", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:58
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:58
             "READ",
             ReadTopicState(input_keys=["topic"], output_keys=["output"]),
-            transitions={
-                "succeeded": "WATCH",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "WATCH", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:63
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:63
             "WATCH",
             smach_ros.MonitorState(
-                "/battery",
-                Float32,
-                lambda userdata, message: message.data > 0.2,
-                max_checks=3,
+                "/battery", Float32, lambda userdata, message: message.data > 0.2, max_checks=3
             ),
-            transitions={
-                "valid": "CHECK",
-                "invalid": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"valid": "CHECK", "invalid": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:70
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:70
             "CHECK",
             smach_ros.ConditionState(
                 lambda userdata: True,
@@ -857,8 +818,7 @@ def build():
             transitions={"true": "FRAME", "false": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:77
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:77
             "FRAME",
             TF2ListenerState(),
             transitions={
@@ -868,40 +828,26 @@ def build():
             },
         )
 
-        # main.yml:80
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:80
             "MOVE_POINT",
             TransformMsgState(
                 transform_type="rotation",
                 input_keys=["msg", "frame_id"],
                 output_keys=["output_msg"],
             ),
-            transitions={
-                "succeeded": "PUBLISH",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "PUBLISH", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:86
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:86
             "PUBLISH",
-            PublishMsgState(
-                "start",
-                "smacha/publish",
-                input_keys=["msg", "topic", "rate"],
-            ),
+            PublishMsgState("start", "smacha/publish", input_keys=["msg", "topic", "rate"]),
             transitions={"succeeded": "ECHO", "aborted": "aborted"},
         )
 
-        # main.yml:91
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:91
             "ECHO",
             PublishObserverMsgState(
-                "add",
-                "smacha/echo",
-                sub_topic="/battery",
-                input_keys=["msg", "topic"],
+                "add", "smacha/echo", sub_topic="/battery", input_keys=["msg", "topic"]
             ),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},
         )

@@ -1,35 +1,22 @@
 # Made by smachac 0.1.0 from main.yml (sha256 b60880ba9ee335fa).
 """The state machine `patrol`."""
 
-from smachac.runtime.smach_ros2 import parameters, program
+from smachac.runtime.installed import smach, smach_ros
+from smachac.runtime.smach_ros2 import program
 from smachac.runtime.smach_ros2.bag_states import RecordROSBagState
 from smachac.runtime.smach_ros2.message_fields import checking, filled
-from smachac.runtime.smach_ros2.publish_states import (
-    PublishMsgState,
-    PublishObserverMsgState,
-)
+from smachac.runtime.smach_ros2.publish_states import PublishMsgState, PublishObserverMsgState
 from smachac.runtime.smach_ros2.ros import duration
 from smachac.runtime.smach_ros2.topics import ReadTopicState, WaitForMsgState
-from smachac.runtime.smach_ros2.transform_states import (
-    TF2ListenerState,
-    TransformMsgState,
-)
+from smachac.runtime.smach_ros2.transform_states import TF2ListenerState, TransformMsgState
 from std_msgs.msg import Float32
 from std_srvs.srv import SetBool, Trigger
 from test_msgs.action import Fibonacci
 
-try:
-    import smach
-    import smach_ros
-except ImportError:  # without SMACH: smachac.runtime has the same names
-    from smachac.runtime import smach
-    from smachac.runtime import smach_ros2 as smach_ros
-
 
 def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
     """Build the state machine `patrol`."""
-    # main.yml:2
-    patrol = smach.StateMachine(outcomes=["succeeded", "aborted", "preempted"])
+    patrol = smach.StateMachine(outcomes=["succeeded", "aborted", "preempted"])  # main.yml:2
     patrol.userdata.order = 3
     patrol.userdata.file = "run.bag"
     patrol.userdata.topics = ["/battery"]
@@ -39,15 +26,13 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
     patrol.userdata.target = "map"
     patrol.userdata.source = "base"
     with patrol:
-        # main.yml:19
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:19
             "RECORD",
             RecordROSBagState(node, "start"),
             transitions={"succeeded": "COUNT", "aborted": "aborted"},
         )
 
-        # main.yml:23
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:23
             "COUNT",
             smach_ros.SimpleActionState(
                 node,
@@ -66,24 +51,15 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
             },
         )
 
-        # main.yml:32
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:32
             "COUNT_AGAIN",
             smach_ros.SimpleActionState(
-                node,
-                "count",
-                Fibonacci,
-                goal=filled(Fibonacci.Goal(), {"order": 5}),
+                node, "count", Fibonacci, goal=filled(Fibonacci.Goal(), {"order": 5})
             ),
-            transitions={
-                "succeeded": "ENABLE",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "ENABLE", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:38
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:38
             "ENABLE",
             smach_ros.ServiceState(
                 node,
@@ -92,15 +68,10 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
                 request=filled(SetBool.Request(), {"data": True}),
                 response_slots=["message"],
             ),
-            transitions={
-                "succeeded": "DOCK",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "DOCK", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:45
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:45
             "DOCK",
             smach_ros.ServiceState(
                 node,
@@ -109,15 +80,10 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
                 request=Trigger.Request(),
                 request_cb=checking(Trigger.Request),
             ),
-            transitions={
-                "succeeded": "BATTERY",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "BATTERY", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:51
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:51
             "BATTERY",
             WaitForMsgState(
                 node,
@@ -126,26 +92,16 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
                 msg_cb=lambda message, userdata: message.data > 0.2,
                 timeout=patience,
             ),
-            transitions={
-                "succeeded": "READ",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "READ", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:58
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:58
             "READ",
             ReadTopicState(node, input_keys=["topic"], output_keys=["output"]),
-            transitions={
-                "succeeded": "WATCH",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "WATCH", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:63
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:63
             "WATCH",
             smach_ros.MonitorState(
                 node,
@@ -154,15 +110,10 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
                 lambda userdata, message: message.data > 0.2,
                 max_checks=3,
             ),
-            transitions={
-                "valid": "CHECK",
-                "invalid": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"valid": "CHECK", "invalid": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:70
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:70
             "CHECK",
             smach_ros.ConditionState(
                 node,
@@ -174,8 +125,7 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
             transitions={"true": "FRAME", "false": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:77
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:77
             "FRAME",
             TF2ListenerState(node),
             transitions={
@@ -185,8 +135,7 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
             },
         )
 
-        # main.yml:80
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:80
             "MOVE_POINT",
             TransformMsgState(
                 node,
@@ -194,34 +143,19 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
                 input_keys=["msg", "frame_id"],
                 output_keys=["output_msg"],
             ),
-            transitions={
-                "succeeded": "PUBLISH",
-                "aborted": "aborted",
-                "preempted": "preempted",
-            },
+            transitions={"succeeded": "PUBLISH", "aborted": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:86
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:86
             "PUBLISH",
-            PublishMsgState(
-                node,
-                "start",
-                "smacha/publish",
-                input_keys=["msg", "topic", "rate"],
-            ),
+            PublishMsgState(node, "start", "smacha/publish", input_keys=["msg", "topic", "rate"]),
             transitions={"succeeded": "ECHO", "aborted": "aborted"},
         )
 
-        # main.yml:91
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:91
             "ECHO",
             PublishObserverMsgState(
-                node,
-                "add",
-                "smacha/echo",
-                sub_topic=battery_topic,
-                input_keys=["msg", "topic"],
+                node, "add", "smacha/echo", sub_topic=battery_topic, input_keys=["msg", "topic"]
             ),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},
         )
@@ -230,28 +164,10 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
 
 def main(arguments=None):
     """Run the state machine once in a ROS node and return its outcome."""
-    node = program.start_node("patrol", arguments)
-    try:
-        values = parameters.declared(
-            node,
-            build,
-            choices={"mode": ["transform", "translation", "rotation"]},
-        )
-        patrol = build(node, **values)
-        return program.run(node, patrol)
-    finally:
-        program.stop_node(node)
-
-
-def run_node():
-    """Run the node, print the outcome and return the exit code for it."""
-    try:
-        outcome = main()
-    except parameters.ParameterError as error:
-        raise SystemExit(str(error)) from None
-    print(f"outcome: {outcome}")
-    return program.exit_code(outcome, failures=["aborted", "preempted"])
+    return program.run_once(
+        "patrol", build, arguments, choices={"mode": ["transform", "translation", "rotation"]}
+    )
 
 
 if __name__ == "__main__":
-    raise SystemExit(run_node())
+    raise SystemExit(program.run_main(main, failures=["aborted", "preempted"]))

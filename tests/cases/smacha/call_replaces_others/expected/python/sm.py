@@ -1,42 +1,13 @@
 # Made by smachac 0.1.0 from main.yml (sha256 b5cfaa95e941898d).
 """The state machine `sm`."""
 
-import os
-import signal
-import socket
-import threading
+from smachac.runtime import signals
+from smachac.runtime.additions import SleepState
 
 try:
     import smach
 except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
-
-
-class SleepState(smach.State):
-    """Waits for `time` seconds: a number, or a function of the userdata.
-
-    A preempt request ends the wait.
-    """
-
-    def __init__(self, time, input_keys=(), outcomes=("succeeded", "preempted")):
-        super().__init__(
-            outcomes=list(outcomes),
-            input_keys=list(input_keys),
-        )
-        self.time = time
-        self.end_of_wait = threading.Event()
-
-    def request_preempt(self):
-        super().request_preempt()
-        self.end_of_wait.set()
-
-    def execute(self, userdata):
-        self.end_of_wait.wait(self.time(userdata) if callable(self.time) else self.time)
-        self.end_of_wait.clear()
-        if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
-            self.service_preempt()
-            return "preempted"
-        return "succeeded"
 
 
 class ScriptedState(smach.State):
@@ -67,70 +38,30 @@ class ScriptedState(smach.State):
 
 def build():
     """Build the state machine `sm`."""
-    # main.yml:2
-    sm = smach.StateMachine(outcomes=["succeeded"])
+    sm = smach.StateMachine(outcomes=["succeeded"])  # main.yml:2
     with sm:
-        # main.yml:6
         # Longer than usual.
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:6
             "WAIT",
             SleepState(time=2.5),
             transitions={"succeeded": "SAY", "preempted": "succeeded"},
         )
 
-        # main.yml:7
-        smach.StateMachine.add(
-            "SAY",
-            ScriptedState(outcomes=["told"]),
-            transitions={"told": "succeeded"},
+        smach.StateMachine.add(  # main.yml:7
+            "SAY", ScriptedState(outcomes=["told"]), transitions={"told": "succeeded"}
         )
     return sm
-
-
-stop_signals: list[int] = []
-
-
-def stop_at_signals(stop):
-    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
-
-    A thread reads the signals from a socket: Python runs no signal handler while the main
-    thread is blocked.
-    """
-    read, write = socket.socketpair()
-    write.setblocking(False)
-    signal.set_wakeup_fd(write.detach())
-    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
-    for number in handled:
-        signal.signal(number, lambda number, frame: stop_signals.append(number))
-
-    terminals = [stream for stream in range(3) if os.isatty(stream)]
-
-    def wait():
-        is_stopping = False
-        while True:
-            number = read.recv(1)[0]
-            if number in handled and is_stopping:
-                os._exit(128 + number)
-            if number in handled:
-                is_stopping = True
-                for stream in terminals:
-                    if not os.isatty(stream):  # it was closed: output to it is an error
-                        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
-                threading.Thread(target=stop, daemon=False).start()
-
-    threading.Thread(target=wait, daemon=True).start()
 
 
 def main():
     """Run the state machine once and return its outcome."""
     sm = build()
     if __name__ == "__main__":
-        stop_at_signals(sm.request_preempt)
+        signals.stop_at_signals(sm)
     return sm.execute()
 
 
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

@@ -5,32 +5,14 @@ import csv
 import glob
 import os
 import random
-import signal
-import socket
-import threading
+
+from smachac.runtime import signals
+from smachac.runtime.additions import with_callbacks
 
 try:
     import smach
 except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
-
-
-def with_callbacks(state, callbacks):
-    """Let a state first call functions of its userdata, each for the key of its name."""
-
-    def call_and_execute(userdata):
-        for key in sorted(callbacks):
-            function = callbacks[key]
-            if not smach.has_smach_interface(function):
-                userdata[key] = function(userdata)
-            else:  # it writes its keys itself
-                inputs = function.get_registered_input_keys()
-                outputs = function.get_registered_output_keys()
-                function(smach.Remapper(userdata, inputs, outputs, {}))
-        return execute(userdata)
-
-    execute, state.execute = state.execute, call_and_execute
-    return state
 
 
 def columns(name, value, ignored):
@@ -133,14 +115,12 @@ class DeleteFileState(smach.State):
 
 def build():
     """Build the state machine `sm`."""
-    # main.yml:2
-    sm = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    sm = smach.StateMachine(outcomes=["succeeded", "aborted"])  # main.yml:2
     sm.userdata.folder = "logs"
     sm.userdata.word = "a"
     sm.userdata.tries = 0
     with sm:
-        # main.yml:7
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:7
             "DRAW",
             with_callbacks(
                 RandomOutcomeState(
@@ -154,8 +134,7 @@ def build():
             transitions={"again": "DRAW", "enough": "WRITE"},
         )
 
-        # main.yml:15
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:15
             "WRITE",
             with_callbacks(
                 WriteCSVFileState(
@@ -171,8 +150,7 @@ def build():
             transitions={"succeeded": "DELETE", "aborted": "aborted"},
         )
 
-        # main.yml:24
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:24
             "DELETE",
             with_callbacks(
                 DeleteFileState(input_keys=["file", "folder"], output_keys=["file"]),
@@ -183,50 +161,15 @@ def build():
     return sm
 
 
-stop_signals: list[int] = []
-
-
-def stop_at_signals(stop):
-    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
-
-    A thread reads the signals from a socket: Python runs no signal handler while the main
-    thread is blocked.
-    """
-    read, write = socket.socketpair()
-    write.setblocking(False)
-    signal.set_wakeup_fd(write.detach())
-    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
-    for number in handled:
-        signal.signal(number, lambda number, frame: stop_signals.append(number))
-
-    terminals = [stream for stream in range(3) if os.isatty(stream)]
-
-    def wait():
-        is_stopping = False
-        while True:
-            number = read.recv(1)[0]
-            if number in handled and is_stopping:
-                os._exit(128 + number)
-            if number in handled:
-                is_stopping = True
-                for stream in terminals:
-                    if not os.isatty(stream):  # it was closed: output to it is an error
-                        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
-                threading.Thread(target=stop, daemon=False).start()
-
-    threading.Thread(target=wait, daemon=True).start()
-
-
 def main():
     """Run the state machine once and return its outcome."""
     sm = build()
     if __name__ == "__main__":
-        stop_at_signals(sm.request_preempt)
+        signals.stop_at_signals(sm)
     return sm.execute()
 
 
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

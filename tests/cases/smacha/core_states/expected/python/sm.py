@@ -1,11 +1,9 @@
 # Made by smachac 0.1.0 from main.yml (sha256 055d40ab4ec652a9).
 """The state machine `sm`."""
 
-import os
 import random
-import signal
-import socket
-import threading
+
+from smachac.runtime import signals
 
 try:
     import smach
@@ -39,18 +37,14 @@ class CallbacksState(smach.State):
 class ConditionalOutcomeState(smach.State):
     """Ends with the first outcome whose condition is true, otherwise the default."""
 
-    def __init__(
-        self, outcomes, callbacks, default_outcome, input_keys=(), output_keys=()
-    ):
+    def __init__(self, outcomes, callbacks, default_outcome, input_keys=(), output_keys=()):
         super().__init__(
             outcomes=outcomes,
             input_keys=list(input_keys),
             output_keys=list(output_keys),
         )
         self.writes_outcome = "outcome" in output_keys
-        self.conditions = [
-            (name, callbacks[name]) for name in outcomes if name in callbacks
-        ]
+        self.conditions = [(name, callbacks[name]) for name in outcomes if name in callbacks]
         self.default_outcome = default_outcome
 
     def execute(self, userdata):
@@ -97,23 +91,18 @@ class PrintUserdataState(smach.State):
 
 def build():
     """Build the state machine `sm`."""
-    # main.yml:2
-    sm = smach.StateMachine(outcomes=["succeeded", "failed"])
+    sm = smach.StateMachine(outcomes=["succeeded", "failed"])  # main.yml:2
     sm.userdata.n = 1
     with sm:
-        # main.yml:7
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:7
             "ADD",
             CallbacksState(
-                callbacks={"n": lambda ud: ud.n + 1},
-                input_keys=["n"],
-                output_keys=["n"],
+                callbacks={"n": lambda ud: ud.n + 1}, input_keys=["n"], output_keys=["n"]
             ),
             transitions={"succeeded": "JUDGE"},
         )
 
-        # main.yml:13
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:13
             "JUDGE",
             ConditionalOutcomeState(
                 outcomes=["large", "small"],
@@ -124,66 +113,27 @@ def build():
             transitions={"large": "SHOW", "small": "CHANCE"},
         )
 
-        # main.yml:20
-        smach.StateMachine.add(
+        smach.StateMachine.add(  # main.yml:20
             "CHANCE",
             RandomOutcomeState(outcomes=["heads", "tails"]),
             transitions={"heads": "ADD", "tails": "failed"},
         )
 
-        # main.yml:21
-        smach.StateMachine.add(
-            "SHOW",
-            PrintUserdataState(input_keys=["n"]),
-            transitions={"succeeded": "succeeded"},
+        smach.StateMachine.add(  # main.yml:21
+            "SHOW", PrintUserdataState(input_keys=["n"]), transitions={"succeeded": "succeeded"}
         )
     return sm
-
-
-stop_signals: list[int] = []
-
-
-def stop_at_signals(stop):
-    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
-
-    A thread reads the signals from a socket: Python runs no signal handler while the main
-    thread is blocked.
-    """
-    read, write = socket.socketpair()
-    write.setblocking(False)
-    signal.set_wakeup_fd(write.detach())
-    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
-    for number in handled:
-        signal.signal(number, lambda number, frame: stop_signals.append(number))
-
-    terminals = [stream for stream in range(3) if os.isatty(stream)]
-
-    def wait():
-        is_stopping = False
-        while True:
-            number = read.recv(1)[0]
-            if number in handled and is_stopping:
-                os._exit(128 + number)
-            if number in handled:
-                is_stopping = True
-                for stream in terminals:
-                    if not os.isatty(stream):  # it was closed: output to it is an error
-                        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
-                threading.Thread(target=stop, daemon=False).start()
-
-    threading.Thread(target=wait, daemon=True).start()
 
 
 def main():
     """Run the state machine once and return its outcome."""
     sm = build()
     if __name__ == "__main__":
-        stop_at_signals(sm.request_preempt)
+        signals.stop_at_signals(sm)
     return sm.execute()
 
 
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

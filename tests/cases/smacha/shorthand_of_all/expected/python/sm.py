@@ -1,91 +1,13 @@
 # Made by smachac 0.1.0 from main.yml (sha256 583ef0632d9effb6).
 """The state machine `sm`."""
 
-import os
-import signal
-import socket
-import threading
+from smachac.runtime import signals
+from smachac.runtime.additions import pass_on_stop_requests
 
 try:
     import smach
 except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
-
-
-def withdraw(state):
-    """Take back the unanswered stop requests of a state and of the states inside."""
-    if state.preempt_requested():
-        state.recall_preempt()
-        for child in getattr(state, "get_children", dict)().values():
-            withdraw(child)
-
-
-def stoppable(container):
-    """Let a container pass on every stop request, also an early one and a second one."""
-    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
-        return container
-    run, request = container.execute, container.request_preempt
-    children = container.get_children
-    concurrent = isinstance(container, smach.Concurrence)
-    container.busy = container.asked = False
-
-    def pass_on():
-        for label in container.get_active_states() or list(children()):
-            child = children().get(label)
-            again = hasattr(child, "get_children")
-            if child and (again or not child.preempt_requested()):
-                child.request_preempt()
-
-    def request_preempt():
-        if not container.busy:
-            return request()
-        container.asked = True
-        if not concurrent:
-            smach.State.request_preempt(container)
-        pass_on()
-
-    def execute(*userdata):
-        container.busy, container.asked = True, container.preempt_requested()
-        if container.asked:
-            pass_on()
-        if concurrent:  # with its own request, SMACH for ROS 1 ends as preempted
-            container.service_preempt()
-        unanswered = True
-        try:
-            outcome = run(*userdata)
-            unanswered = any(child.preempt_requested() for child in children().values())
-            return outcome
-        finally:
-            container.busy = False
-            for child in children().values():
-                withdraw(child)
-            if concurrent and container.asked and unanswered:
-                request()
-
-    if concurrent and container._child_termination_cb:
-        ends = container._child_termination_cb
-
-        def ends_others(outcomes):
-            return not container.asked and ends(outcomes)
-
-        container._child_termination_cb = ends_others
-    container.execute, container.request_preempt = execute, request_preempt
-    return container
-
-
-def stoppable_again(machine):
-    """Let a machine pass on a second stop request while the same container in it runs."""
-    request, children = machine.request_preempt, machine.get_children
-
-    def request_preempt():
-        again = machine.preempt_requested() and getattr(smach, "compat", True)
-        request()
-        for label in machine.get_active_states() if again else ():
-            if hasattr(children().get(label), "get_children"):
-                children()[label].request_preempt()
-
-    machine.request_preempt = request_preempt
-    return machine
 
 
 class CallbacksState(smach.State):
@@ -139,23 +61,18 @@ class ScriptedState(smach.State):
 
 def build():
     """Build the state machine `sm`."""
-    # main.yml:2
-    sm = stoppable_again(smach.StateMachine(outcomes=["succeeded", "failed"]))
+    sm = smach.StateMachine(outcomes=["succeeded", "failed"])  # main.yml:2
     sm.userdata.start = 1
     with sm:
-        # main.yml:10
-        sm_split = stoppable(
-            smach.Concurrence(
-                outcomes=["succeeded", "failed"],
-                default_outcome="failed",
-                input_keys=["start"],
-                output_keys=["sum"],
-                outcome_map={"succeeded": {"COUNT": "succeeded", "CALL": "done"}},
-            ),
+        sm_split = smach.Concurrence(  # main.yml:10
+            outcomes=["succeeded", "failed"],
+            default_outcome="failed",
+            input_keys=["start"],
+            output_keys=["sum"],
+            outcome_map={"succeeded": {"COUNT": "succeeded", "CALL": "done"}},
         )
         with sm_split:
-            # main.yml:19
-            smach.Concurrence.add(
+            smach.Concurrence.add(  # main.yml:19
                 "COUNT",
                 CallbacksState(
                     callbacks={"sum": lambda ud: ud.start + 1},
@@ -164,65 +81,28 @@ def build():
                 ),
             )
 
-            # main.yml:20
-            smach.Concurrence.add(
+            smach.Concurrence.add(  # main.yml:20
                 "CALL",
                 ScriptedState(outcomes=["done"], input_keys=["part"]),
                 remapping={"part": "start"},
             )
 
         smach.StateMachine.add(
-            "SPLIT",
-            sm_split,
-            transitions={"succeeded": "succeeded", "failed": "failed"},
+            "SPLIT", sm_split, transitions={"succeeded": "succeeded", "failed": "failed"}
         )
+    pass_on_stop_requests(sm)
     return sm
-
-
-stop_signals: list[int] = []
-
-
-def stop_at_signals(stop):
-    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
-
-    A thread reads the signals from a socket: Python runs no signal handler while the main
-    thread is blocked.
-    """
-    read, write = socket.socketpair()
-    write.setblocking(False)
-    signal.set_wakeup_fd(write.detach())
-    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
-    for number in handled:
-        signal.signal(number, lambda number, frame: stop_signals.append(number))
-
-    terminals = [stream for stream in range(3) if os.isatty(stream)]
-
-    def wait():
-        is_stopping = False
-        while True:
-            number = read.recv(1)[0]
-            if number in handled and is_stopping:
-                os._exit(128 + number)
-            if number in handled:
-                is_stopping = True
-                for stream in terminals:
-                    if not os.isatty(stream):  # it was closed: output to it is an error
-                        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
-                threading.Thread(target=stop, daemon=False).start()
-
-    threading.Thread(target=wait, daemon=True).start()
 
 
 def main():
     """Run the state machine once and return its outcome."""
     sm = build()
     if __name__ == "__main__":
-        stop_at_signals(sm.request_preempt)
+        signals.stop_at_signals(sm)
     return sm.execute()
 
 
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

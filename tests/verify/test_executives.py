@@ -1,24 +1,24 @@
-"""`smachac verify --targets yasmin`: paths played on the stand-in for YASMIN."""
+"""`smachac verify --targets yasmin` and `flexbe`: paths played on the stand-ins."""
 
 from __future__ import annotations
 
 import json
 import os
+import pkgutil
 import re
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import smachac
 from smachac.commands.cli import main
-from smachac.ir.nodes import Checked
-from smachac.targets.yasmin import module_text
 from smachac.verify.players.yasmin import modules
+from tests.flexbe.programs import engine_modules as flexbe_modules
 from tests.support.examples import every
-from tests.yasmin import stand_in
+from tests.yasmin import stand_in as yasmin_stand_in
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = [ROOT / "examples" / name for name in ("03_concurrence", "06_callbacks", "07_iterator")]
@@ -66,10 +66,15 @@ states:
 """
 
 
+ENGINES = pytest.mark.parametrize("target", ["yasmin", "flexbe"])
+
+
 @pytest.fixture
-def _engine(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The stand-in is the YASMIN that is installed."""
-    monkeypatch.setitem(sys.modules, "yasmin", stand_in)
+def _engine(monkeypatch: pytest.MonkeyPatch, silent_smach: None) -> None:
+    """The stand-ins are the YASMIN, and the FlexBE with its ROS 2, that are installed."""
+    monkeypatch.setitem(sys.modules, "yasmin", yasmin_stand_in)
+    for name, module in flexbe_modules().items():
+        monkeypatch.setitem(sys.modules, name, module)
 
 
 @pytest.fixture
@@ -80,16 +85,17 @@ def rounds(tmp_path: Path) -> str:
 
 
 @pytest.mark.usefixtures("_engine")
+@ENGINES
 @pytest.mark.parametrize(
     "folder", every(2, [*EXAMPLES, *CASES]), ids=lambda folder: getattr(folder, "name", None)
 )
-def test_yasmin_does_what_the_interpreter_does(
-    folder: Path, capsys: pytest.CaptureFixture[str]
+def test_the_executive_does_what_the_interpreter_does(
+    folder: Path, target: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     script = str(folder / "main.yml")
-    assert main(["verify", script, "--targets", "yasmin", "--paths", "60", "--format", "json"]) == 0
+    assert main(["verify", script, "--targets", target, "--paths", "60", "--format", "json"]) == 0
     told = json.loads(capsys.readouterr().out)
-    assert told["targets"] == ["yasmin"]
+    assert told["targets"] == [target]
     assert told["agree"]
     assert told["coverage"]["taken"] > 1
 
@@ -98,9 +104,9 @@ def test_yasmin_does_what_the_interpreter_does(
 def test_retries_time_limits_loops_and_stop_requests_agree(
     rounds: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["verify", rounds, "--targets", "python,yasmin", "--paths", "80"]) == 0
+    assert main(["verify", rounds, "--targets", "python,yasmin,flexbe", "--paths", "80"]) == 0
     out = capsys.readouterr().out
-    assert out.endswith("python: agrees\nyasmin: agrees\n")
+    assert out.endswith("python: agrees\nyasmin: agrees\nflexbe: agrees\n")
     assert re.search(r"[1-9]\d* stopped", out)
 
 
@@ -129,56 +135,77 @@ states:
 
 
 @pytest.mark.usefixtures("_engine")
-def test_secret_values_are_hidden(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@ENGINES
+def test_secret_values_are_hidden(
+    tmp_path: Path, target: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     script = tmp_path / "main.yml"
     script.write_text(SECRET, "utf-8")
-    assert main(["verify", str(script), "--targets", "yasmin"]) == 0
-    assert capsys.readouterr().out.endswith("yasmin: agrees\n")
+    assert main(["verify", str(script), "--targets", target]) == 0
+    assert capsys.readouterr().out.endswith(f"{target}: agrees\n")
 
 
-def astray(text: str) -> str:
-    return text.replace('"late": "BOTH"', '"late": "aborted"')
+FAULTS = {
+    "a transition": {
+        "yasmin": ('"late": "BOTH"', '"late": "aborted"'),
+        "flexbe": ("'late': 'BOTH'", "'late': 'aborted'"),
+    },
+    "an outcome of a concurrence": {
+        "yasmin": ('("mixed", {"LEFT": "done"', '("mixed", {"LEFT": "failed"'),
+        "flexbe": ("('mixed', [('LEFT', 'done')", "('mixed', [('LEFT', 'failed')"),
+    },
+    "a remapping": {
+        "yasmin": ('remapping={"size": "width"}', 'remapping={"size": "goal"}'),
+        "flexbe": ("remapping={'size': 'width', 'goal'", "remapping={'size': 'goal', 'goal'"),
+    },
+    "the outcomes of a retry": {
+        "yasmin": ('again=["failed"]', "again=[]"),
+        "flexbe": ('again=["failed"]', "again=[]"),
+    },
+    "the transition of a stop": {
+        "yasmin": ('"preempted": "preempted"}', '"preempted": "aborted"}'),
+        "flexbe": ("'timeout': 'aborted', 'preempted_': 'preempted'",
+                   "'timeout': 'aborted', 'preempted_': 'aborted'"),
+    },
+}  # fmt: skip
+"""Wrong programs: the text that is replaced, and the new one, by target."""
 
-
-def mistaken(text: str) -> str:
-    return text.replace('("mixed", {"LEFT": "done"', '("mixed", {"LEFT": "failed"')
-
-
-def unmapped(text: str) -> str:
-    return text.replace('remapping={"size": "width"}', 'remapping={"size": "goal"}')
-
-
-def impatient(text: str) -> str:
-    return text.replace('again=["failed"]', "again=[]")
-
-
-def unstopped(text: str) -> str:
-    return text.replace('"preempted": "preempted"}', '"preempted": "aborted"}')
+MAIN_TEXT = {
+    "yasmin": "smachac.targets.yasmin.module_text",
+    "flexbe": "smachac.targets.flexbe.behavior_text",
+}
+"""The function that makes the text with the containers, by target."""
 
 
 @pytest.mark.usefixtures("_engine")
-@pytest.mark.parametrize("break_", [astray, mistaken, unmapped, impatient, unstopped])
+@ENGINES
+@pytest.mark.parametrize("fault", FAULTS)
 def test_a_wrong_program_is_found(
-    break_: Callable[[str], str],
+    fault: str,
+    target: str,
     rounds: str,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
+    emit = pkgutil.resolve_name(MAIN_TEXT[target])
     changed = []
 
-    def broken(machine: Checked, program: str, package: str = "") -> str:
-        text = module_text(machine, program, package)
-        changed.append(break_(text) != text)
-        return break_(text)
+    def broken(*arguments: Any) -> str:
+        text: str = emit(*arguments)
+        wrong = text.replace(*FAULTS[fault][target])
+        changed.append(wrong != text)
+        return wrong
 
-    monkeypatch.setattr("smachac.targets.yasmin.module_text", broken)
-    assert main(["verify", rounds, "--targets", "yasmin", "--paths", "80"]) == 1
+    monkeypatch.setattr(MAIN_TEXT[target], broken)
+    assert main(["verify", rounds, "--targets", target, "--paths", "80"]) == 1
     assert changed == [True]
-    assert "yasmin differs from the interpreter" in capsys.readouterr().out
+    assert f"{target} differs from the interpreter" in capsys.readouterr().out
 
 
-def run_verify(rounds: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "smachac", "verify", rounds, "--targets", "yasmin"]
+def run_verify(
+    rounds: str, folder: Path, target: str = "yasmin"
+) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "smachac", "verify", rounds, "--targets", target]
     environment = {**os.environ, "PYTHONPATH": str(folder)}
     return subprocess.run(
         [*command, "--paths", "20"], capture_output=True, encoding="utf-8", env=environment
@@ -186,7 +213,7 @@ def run_verify(rounds: str, folder: Path) -> subprocess.CompletedProcess[str]:
 
 
 def test_the_yasmin_of_this_python_is_used(rounds: str, tmp_path: Path) -> None:
-    text = Path(stand_in.__file__).read_text("utf-8")
+    text = Path(yasmin_stand_in.__file__).read_text("utf-8")
     (tmp_path / "yasmin.py").write_text(text, "utf-8")
     done = run_verify(rounds, tmp_path)
     assert done.returncode == 0, done.stderr
@@ -199,6 +226,25 @@ def test_without_yasmin_it_is_named(rounds: str, tmp_path: Path) -> None:
     assert (done.returncode, done.stdout) == (1, "")
     assert "YASMIN is not here: build it from its repository" in done.stderr
     assert "(no shared library)" in done.stderr
+
+
+def test_without_flexbe_it_is_named(rounds: str, tmp_path: Path) -> None:
+    (tmp_path / "flexbe_core.py").write_text("raise ImportError('no messages')\n", "utf-8")
+    done = run_verify(rounds, tmp_path, "flexbe")
+    assert (done.returncode, done.stdout) == (1, "")
+    assert "FlexBE is not here: build flexbe_core and flexbe_msgs" in done.stderr
+    assert "(no messages)" in done.stderr
+
+
+@pytest.mark.usefixtures("_engine")
+def test_packages_that_do_not_load_are_named(
+    rounds: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = "import no_such_module\n"
+    monkeypatch.setattr(MAIN_TEXT["flexbe"], lambda *_: text)
+    assert main(["verify", rounds, "--targets", "flexbe"]) == 1
+    assert "the packages for FlexBE cannot be loaded" in capsys.readouterr().err
+    assert not [name for name in sys.modules if "main_flexbe" in name]
 
 
 @pytest.mark.usefixtures("_engine")
@@ -243,8 +289,9 @@ def test_a_state_whose_class_is_a_container(
     interface = 'outcomes: [ok]\ncode: {python: "own_container:Mine"}\n'
     (tmp_path / "templates" / "Mine.yml").write_text(interface, "utf-8")
     (tmp_path / "own_container.py").write_text(OWN, "utf-8")
-    assert main(["verify", str(script), "--targets", "python,yasmin"]) == 0
-    assert capsys.readouterr().out.endswith("python: agrees\nyasmin: agrees\n")
+    assert main(["verify", str(script), "--targets", "python,yasmin,flexbe"]) == 0
+    ends = "python: agrees\nyasmin: agrees\nflexbe: agrees\n"
+    assert capsys.readouterr().out.endswith(ends)
     monkeypatch.syspath_prepend(tmp_path)
     with modules(smachac.compile(script, "yasmin")) as module:
         assert module.run().execute() == "done"

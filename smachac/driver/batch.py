@@ -28,7 +28,7 @@ from smachac.records import dataclass, field
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from smachac.python_machines import PythonProject
+    from smachac.driver.python_machines import PythonProject
 
 
 LEAST_SCRIPTS = 16
@@ -126,7 +126,7 @@ class _Checker:
         """The result of `light` in another process; None if there is none that holds here."""
         if result is None:
             return None
-        from smachac.parallel import unpacked
+        from smachac.driver.parallel import unpacked
 
         found = unpacked(result, self.disk)
         return _Checked(*found) if found is not None and found[0] is not None else None
@@ -211,7 +211,7 @@ def check_scripts(
         if processes > 1 and not analyses:  # the first script has loaded what all need
             left = [other for other in paths if other not in (path, *alone)
                     and (python is None or other.suffix != PYTHON_SUFFIX)]  # fmt: skip
-            from smachac.parallel import results_of
+            from smachac.driver.parallel import results_of
 
             results = results_of(checker.light, left, disk, processes)
         analyses[str(path)], uses[str(path)] = checked
@@ -242,7 +242,7 @@ def _python_project(paths: Sequence[Path], disk: Disk, *, cached: bool) -> Pytho
     alone."""
     if all(path.suffix != PYTHON_SUFFIX for path in paths):
         return None
-    from smachac.python_machines import PythonProject
+    from smachac.driver.python_machines import PythonProject
 
     return PythonProject(disk, cached=cached)
 

@@ -15,6 +15,7 @@ from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, grouped
 from smachac.diagnostics.severities import apply_severities
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.driver import CODES, Analysis
+from smachac.driver.python_cache import Cache, Known, digest_of
 from smachac.frontend.discovery import PYTHON_SUFFIX
 from smachac.frontend.errors import python_machines as errors
 from smachac.frontend.errors.suppressions import vain_description
@@ -34,7 +35,6 @@ from smachac.pysource.machines.roots import Roots, machines_of, variants_of
 from smachac.pysource.machines.values import UseFault
 from smachac.pysource.python2 import INSTALL, is_installed, looks_like_python2
 from smachac.pysource.source import LONGEST, PythonText, is_readable, syntax_error
-from smachac.python_cache import Cache, Known, digest_of
 from smachac.records import dataclass
 
 CANNOT_WORK = frozenset({
