@@ -5,6 +5,7 @@ const vscode = require("vscode");
 const { LanguageClient } = require("vscode-languageclient/node");
 
 let client;
+let started;
 let panel;
 
 function program() {
@@ -16,6 +17,7 @@ async function activate(context) {
   const options = {
     documentSelector: [
       { scheme: "file", language: "yaml" },
+      { scheme: "file", language: "python" },
       { scheme: "file", pattern: "**/{smachac,pyproject}.toml" },
     ],
     synchronize: {
@@ -29,12 +31,26 @@ async function activate(context) {
       inTerminal("build", uri, ["--target", "python"])),
     vscode.commands.registerCommand("smachac.draw", (uri) => draw(context, uri)),
     vscode.workspace.onDidSaveTextDocument((document) => redraw(document)),
+    vscode.workspace.onDidOpenTextDocument(startFor),
+    vscode.workspace.onDidChangeTextDocument(({ document }) => startFor(document)),
   );
-  await client.start();
+  const projects = await vscode.workspace.findFiles("**/smachac.toml", undefined, 1);
+  if (projects.length > 0) await start();
+  vscode.workspace.textDocuments.forEach(startFor);
 }
 
 function deactivate() {
-  return client && client.stop();
+  return started && started.then(() => client.stop());
+}
+
+function start() {
+  return started ??= client.start();
+}
+
+// Without a project, a Python file starts the server if its text can build a machine.
+function startFor(document) {
+  if (started || document.uri.scheme !== "file" || document.languageId !== "python") return;
+  if (/smach|yasmin|flexbe/.test(document.getText())) start();
 }
 
 function fileOf(uri) {
@@ -58,6 +74,7 @@ async function inTerminal(command, uri, words) {
 async function draw(context, uri) {
   const file = fileOf(uri);
   if (!file) return;
+  await start();
   const media = vscode.Uri.joinPath(context.extensionUri, "out");
   if (!panel) {
     panel = vscode.window.createWebviewPanel("smachac", "smachac", vscode.ViewColumn.Beside, {
@@ -69,6 +86,8 @@ async function draw(context, uri) {
     panel.webview.html = page(panel.webview, media);
   }
   panel.file = file.toString();
+  const editor = vscode.window.activeTextEditor;
+  panel.line = editor?.document.uri.toString() === panel.file ? editor.selection.active.line : null;
   panel.ready ??= new Promise((resolve) => {
     const once = panel.webview.onDidReceiveMessage((message) => {
       if (message === "ready") resolve(once.dispose());
@@ -82,7 +101,7 @@ async function redraw(document) {
   if (!panel || !panel.file || document.uri.scheme !== "file") return;
   const found = await client.sendRequest("workspace/executeCommand", {
     command: "smachac.picture",
-    arguments: [panel.file],
+    arguments: [panel.file, panel.line],
   });
   if (found && panel) panel.webview.postMessage(found);
 }

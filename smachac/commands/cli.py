@@ -42,7 +42,7 @@ COMMANDS = {
     "inline": ("refactor", "replace the call of a sub-script by its content"),
     "rename": ("refactor", "rename a state, an outcome or a key everywhere"),
     "edit": ("refactor", "change a transition, add or remove a state"),
-    "import": ("import_python", "make scripts of the machines in a Python file for SMACH"),
+    "import": ("import_python", "make scripts of machines in Python, SCXML or YASMIN XML"),
     "migrate": ("migrate", "report what to change in SMACHA scripts and templates"),
     "targets": ("targets", "list the targets and their options"),
     "completion": ("completion", "print the completion of commands for a shell"),

@@ -1,4 +1,4 @@
-"""The command `import`: scripts from a machine in Python for SMACH, with a proof."""
+"""The command `import`: scripts from a machine in Python, SCXML or YASMIN XML, with a proof."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from smachac.diagnostics.source import Span
-    from smachac.refactor.python_import.project import Imported
+    from smachac.refactor.imports.project import Imported
 
 EXAMPLES = """\
 examples:
@@ -31,10 +31,13 @@ examples:
   smachac import machine.py -o project --machine Tour    only those of one machine
   smachac import machine.py -o project --assume "'--fast' in sys.argv=false"
                                                       the branch of an `if` that is not known
+  smachac import machine.scxml -o project             a document of W3C SCXML
+  smachac import demo.xml -o project                  a file of YASMIN's factory or editor
   smachac check project/main.yml                      then: find the errors in the script
   smachac build project/main.yml --target python      and generate its program
 
-The code of your states stays where it is: the scripts name your classes. The command prints what
+The code of your states stays where it is: the scripts name your classes. States of SCXML and
+YASMIN get classes whose code is to be written. The command prints what
 it could not take over, and proves that each script has the same graph as the machine in Python.
 Your code is not run. Files that were edited since an import are never overwritten.
 
@@ -52,7 +55,11 @@ KNOWN = (
 
 def import_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
-    parser.add_argument("file", type=as_path, help="a Python file that builds machines")
+    parser.add_argument(
+        "file",
+        type=as_path,
+        help="a Python file that builds machines, an SCXML document, or an XML file of YASMIN",
+    )
     parser.add_argument("-o", "--output", type=as_path, default=".", metavar="DIR",
                         help="the folder of the project (default: the current one)")  # fmt: skip
     machine_name(parser)
@@ -86,20 +93,25 @@ def import_command(arguments: Namespace) -> int:
     from smachac.commands.cpu_time import CpuTimeError, limited_time
     from smachac.commands.memory import limited_memory
     from smachac.frontend.files import Disk
-    from smachac.refactor.python_import.project import import_python
+    from smachac.refactor.imports.python_project import import_python
+    from smachac.refactor.imports.xml_project import import_xml
 
     path: Path = arguments.file
-    if not is_python(path):
-        return usage(f"{path} is no Python file")
+    is_xml = path.suffix.lower() in (".scxml", ".xml")
+    if not is_python(path) and not is_xml:
+        return usage(f"{path} is no Python, SCXML or XML file")
+    if is_xml and arguments.assume:
+        return usage("--assume is for Python files")
     try:
         with limited_memory(arguments.memory_limit), limited_time(arguments.time_limit):
-            assumed = dict(arguments.assume)
-            made = import_python(path, arguments.output, Disk(), arguments.machine, assumed)
+            made = (import_xml(path, arguments.output, Disk(), arguments.machine) if is_xml
+                    else import_python(path, arguments.output, Disk(), arguments.machine,
+                                       dict(arguments.assume)))  # fmt: skip
     except CpuTimeError as error:
         print(error, file=sys.stderr)
         return FINDINGS
-    if made.file.coverage is None:
-        print_report(without_notes(made.file.report), arguments, sys.stderr)
+    if not made.is_read:
+        print_report(without_notes(made.report), arguments, sys.stderr)
         return FINDINGS
     for code in made.vain:
         return usage(f"--assume: {path} has no condition `{code}` that is not known")
@@ -111,7 +123,8 @@ def import_command(arguments: Namespace) -> int:
               " `smach.StateMachine`", file=sys.stderr)  # fmt: skip
         return FINDINGS
     for machine in made.incomplete:
-        why, help = "parts of it are not known", KNOWN
+        why = "parts of it are not known"
+        help = "add states to it" if is_xml else KNOWN
         if machine.framework:
             why = f"machines for {machine.framework} are not imported"
             help = "`smachac check` and `smachac view` read it; a script has to be written by hand"
@@ -166,7 +179,7 @@ def _on_disk(folder: Path, texts: Mapping[str, str]) -> tuple[list[str], dict[st
     that differ from those on disk. Raises OSError."""
     import os
 
-    from smachac.refactor.python_import.project import imported_from
+    from smachac.refactor.imports.project import imported_from
 
     in_the_way: list[str] = []
     changed: dict[str, str] = {}
@@ -195,7 +208,7 @@ def _text(path: Path) -> str | None:
 
 def _unused(folder: Path, texts: Mapping[str, str]) -> list[str]:
     """The files of an earlier import of the same Python file that this one does not have."""
-    from smachac.refactor.python_import.project import imported_from
+    from smachac.refactor.imports.project import imported_from
 
     (source, *_) = {imported_from(text) for text in texts.values()}
     paths = sorted([*folder.glob("*.*"), *folder.glob("templates/*.*")])
@@ -223,7 +236,7 @@ def _print_proofs(made: Imported, arguments: Namespace) -> int:
             errors = _count(len(proof.report), "error")
             script = shown(arguments.output / proof.script)
             print(f"{shown(proof.script)} has {errors}: `smachac check {script}` shows them")
-    known = {item.code for item in made.file.report}
+    known = {item.code for item in made.report}
     report = [item for proof in made.proofs for item in proof.report if item.code not in known]
     print_report(report, arguments, sys.stderr)
     return OK if proven and not made.incomplete else FINDINGS

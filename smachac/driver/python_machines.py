@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
@@ -36,7 +36,7 @@ from smachac.pysource.machines.project import Repository, module_text
 from smachac.pysource.machines.roots import Roots, machines_of, variants_of
 from smachac.pysource.machines.values import UseFault
 from smachac.pysource.python2 import INSTALL, is_installed, looks_like_python2
-from smachac.pysource.source import LONGEST, is_readable, syntax_error
+from smachac.pysource.source import LONGEST, PythonText, is_readable, syntax_error
 from smachac.records import dataclass
 
 CANNOT_WORK = frozenset({
@@ -77,7 +77,8 @@ class PythonFile:
 
 
 class PythonProject:
-    """Reads Python files of repositories; modules that several files import are read once.
+    """Reads Python files of repositories; modules that several files import are read once, until
+    `forget`.
     `cached`: what is known from the last run is used, without the graphs, and kept for the next
     one by `keep`. `assumed` are the values of conditions that are not known, by their code."""
 
@@ -89,6 +90,9 @@ class PythonProject:
         self.cached = cached
         self.caches: dict[str, Cache] = {}
         self.repositories: dict[tuple[str, bool], tuple[Repository, Evaluator, ClassReader]] = {}
+        self.readers: dict[tuple[str, bool], tuple[ClassReader, frozenset[str]]] = {}
+        self.files: dict[str, list[str]] = {}
+        self.trees: dict[tuple[str, bool], tuple[Source, PythonText | None]] = {}
 
     def read(
         self, path: Path, *, everything: bool = False, built: list[Built] | None = None
@@ -100,7 +104,7 @@ class PythonProject:
         library = disk_library(path, report, disk=self.disk, codes=CODES)
         if source is None:
             return PythonFile(path=path, source=None, report=report)
-        if module_text(source) is None:
+        if self._tree(source) is None:
             report.append(_unreadable(source))
             found = grouped(apply_severities(in_order(report), library.policy))
             return PythonFile(path=path, source=source, report=found)
@@ -156,6 +160,28 @@ class PythonProject:
             path=path, source=source, graphs=tuple(whole), report=found, coverage=coverage
         )
 
+    def forget(self, changed: Collection[str]) -> None:
+        """Reads again what the change of some files, by real path, concerns. Texts that are the
+        same keep their trees, and classes their facts, unless a module has changed that other code
+        imports."""
+        for key, (repository, _, reader) in self.repositories.items():
+            modules = {*repository.loaded, *filter(None, reader.files.values())}
+            self.readers[key] = reader, frozenset(map(os.path.realpath, modules))
+        self.repositories.clear()
+        for key, (reader, read) in [*self.readers.items()]:
+            if not read.isdisjoint(changed):
+                del self.readers[key]
+                continue
+            for file in [file for file in reader.modules if os.path.realpath(file) in changed]:
+                reader.forget(file)
+
+    def list_again(self) -> None:
+        """Lists the files of repositories again: some may be new or gone."""
+        self.files.clear()
+        self.readers.clear()
+        self.repositories.clear()
+        self.trees.clear()
+
     def used_assumptions(self) -> frozenset[str]:
         """The conditions that were not known and whose assumed values were needed."""
         known = (evaluator.used for _, evaluator, _ in self.repositories.values())
@@ -181,14 +207,25 @@ class PythonProject:
         root = repository_of(path)
         key = os.path.realpath(root), everything
         if key not in self.repositories:
-            repository = Repository(map(str, python_files(root)), self._text)
+            if key[0] not in self.files:
+                self.files[key[0]] = [*map(str, python_files(root))]
+            repository = Repository(self.files[key[0]], self._text, self._tree)
             evaluator = Evaluator(repository, self.assumed)
-            reader = ClassReader(repository, whole=everything)
+            reader, _ = self.readers.pop(key, (ClassReader(repository, whole=everything), ()))
+            reader.repository = repository
             self.repositories[key] = repository, evaluator, reader
         return self.repositories[key]
 
     def _text(self, file: str) -> Source | None:
         return self.disk.read(Path(file), [])
+
+    def _tree(self, source: Source, *, compiled: bool = True) -> PythonText | None:
+        """As `module_text`; each text is parsed once."""
+        key = source.name, compiled
+        known = self.trees.get(key)
+        if known is None or known[0] != source:
+            known = self.trees[key] = source, module_text(source, compiled=compiled)
+        return known[1]
 
 
 def repository_of(path: Path) -> Path:
@@ -198,17 +235,18 @@ def repository_of(path: Path) -> Path:
     above = [folder, *Path(os.path.abspath(folder)).parents]  # noqa: PTH100
     for parent in above:
         if (parent / ".git").exists():
-            return _as_given(parent)
+            return _as_given(parent, path)
     for parent in above[:8]:
         if (parent / "package.xml").is_file():
             beside = len([*parent.parent.glob("*/package.xml")])
-            return _as_given(parent.parent if beside > 1 else parent)
+            return _as_given(parent.parent if beside > 1 else parent, path)
     return folder
 
 
-def _as_given(folder: Path) -> Path:
-    """A folder relative to the current one, so that findings name files as users write them."""
-    return Path(os.path.relpath(folder))
+def _as_given(folder: Path, path: Path) -> Path:
+    """A folder relative to the current one, or absolute as a path in it, so that findings name
+    files as users write them."""
+    return folder if path.is_absolute() else Path(os.path.relpath(folder))
 
 
 def python_files(folder: Path) -> Iterator[Path]:
@@ -343,24 +381,33 @@ def _of_uses(faults: Sequence[UseFault]) -> Iterator[Diagnostic]:
         yield errors.missing_member(module, words)
 
 
-def analyses_by_name(file: PythonFile) -> Mapping[str, Analysis]:
-    """Each machine of a file with its findings, by the names of the machines; later ones of a name
-    have a number. `checked` is empty: no program can be generated."""
-    named: dict[str, Analysis] = {}
-    places = [node.span for graph in file.graphs for _, node in walk(graph.machine.root)]
+def graphs_by_name(file: PythonFile) -> Mapping[str, Graph]:
+    """The machines of a file by name; later ones of a name have a number."""
+    named: dict[str, Graph] = {}
     for graph in file.graphs:
         own = graph.machine.root.name
         name, number = own, 2
         while name in named:
             name, number = f"{own}_{number}", number + 1
-        named[name] = Analysis(
-            script=str(file.path), source=file.source, machine=_drawn(graph, name),
-            report=_renamed(_of_machine(file.report, graph.machine, places), own, name),
-        )  # fmt: skip
+        named[name] = graph
     return named
 
 
-def _drawn(graph: Graph, name: str) -> Machine:
+def analyses_by_name(file: PythonFile) -> Mapping[str, Analysis]:
+    """Each machine of a file with its findings, by the names of the machines. `checked` is empty:
+    no program can be generated."""
+    places = [node.span for graph in file.graphs for _, node in walk(graph.machine.root)]
+    return {
+        name: Analysis(
+            script=str(file.path), source=file.source, machine=drawn(graph, name),
+            report=_renamed(_of_machine(file.report, graph.machine, places),
+                            graph.machine.root.name, name),
+        )
+        for name, graph in graphs_by_name(file).items()
+    }  # fmt: skip
+
+
+def drawn(graph: Graph, name: str) -> Machine:
     """A machine with a name, and with what pictures show of it: the digest of its files, and the
     states that are not known exactly."""
     machine = graph.machine

@@ -33,6 +33,8 @@ def word_range(text: str, offset: int, word: re.Pattern[str] = WORD) -> tuple[in
 
 def complete(text: str, offset: int, path: str, view: View | None) -> list[Completion]:
     """The words that fit at an offset of a text, in the order of their likelihood."""
+    if view is not None and view.python is not None:
+        return []
     is_project = view is not None and view.kind == "project"
     start, end = word_range(text, offset, TOML_WORD if is_project else WORD)
     if view is not None and view.kind != "script":

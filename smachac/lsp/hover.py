@@ -23,6 +23,12 @@ from smachac.report.state_types import Known, container_type, type_markdown
 
 def hover_at(view: View, path: str, offset: int, facts: Facts) -> tuple[str, int, int] | None:
     """What the word at an offset of a text means, and its range; None if that is not known."""
+    if view.python is not None:
+        from smachac.lsp.python_view import hover as python_hover
+
+        shown = python_hover(view.python, offset)
+        folder = f"{Path(path).parent}{os.sep}"
+        return shown and (shown[0].replace(folder, ""), *shown[1:])
     if view.kind != "script":
         found = schema_hover(view, offset)
         return (found[0], found[1].start, found[1].end) if found is not None else None

@@ -9,10 +9,15 @@ from smachac.targets.dot import graph
 from smachac.targets.dot.style import identifier
 
 
-def picture(view: View) -> tuple[str, dict[str, Span]] | None:
+def picture(view: View, line: int | None = None) -> tuple[str, dict[str, Span]] | None:
     """The picture of the machine that uses a text, as DOT, and the span of each state by its node
-    in the picture; None if there is no machine. Clusters have the prefix `cluster_`."""
+    in the picture; None if there is no machine. Clusters have the prefix `cluster_`. In a Python
+    file it is the machine at a line, counted from 1."""
     machine = view.machine
+    if view.python is not None:
+        from smachac.lsp.python_view import machine_at
+
+        machine = machine_at(view.python, line)
     if machine is None:
         return None
     shown = written(machine)

@@ -33,7 +33,7 @@ from smachac.lsp.navigation import definitions, named_at, references
 from smachac.lsp.picture import picture
 from smachac.lsp.place import Place, place_at
 from smachac.lsp.positions import Encoding, Positions
-from smachac.lsp.session import Session, View
+from smachac.lsp.session import Session, View, is_python
 from smachac.refactor.formatter import format_script
 from smachac.version import __version__
 
@@ -318,6 +318,11 @@ def _places(server: Server) -> None:
     @server.feature(lsp.TEXT_DOCUMENT_DEFINITION)
     def definition(params: lsp.DefinitionParams) -> list[lsp.Location] | None:
         def answer(view: View, path: str) -> list[lsp.Location]:
+            if view.python is not None:
+                from smachac.lsp import python_view
+
+                spans = python_view.definitions(view.python, server.offset(view, params.position))
+                return [server.location(span) for span in spans]
             place = server.place(view, params.position)
             found = definitions(place, server.facts(view, path)) if place is not None else []
             return [server.location(span) for span in found]
@@ -369,7 +374,7 @@ def _structure(server: Server) -> None:
                     children=[convert(inner) for inner in each.children],
                 )
 
-            return [convert(symbol) for symbol in symbols.symbols(view.tree)]
+            return [convert(symbol) for symbol in symbols_of(view)]
 
         return server.ask(params.text_document.uri, answer)
 
@@ -435,7 +440,10 @@ def _additions(server: Server) -> None:
     @server.feature(lsp.TEXT_DOCUMENT_CODE_LENS)
     def lenses(params: lsp.CodeLensParams) -> list[lsp.CodeLens] | None:
         def answer(view: View, path: str) -> list[lsp.CodeLens]:
-            if not symbols.is_script(view.tree):
+            names = [("Run", "smachac.run"), ("Build", "smachac.build"), ("Draw", "smachac.draw")]
+            if view.python is not None and view.python.graphs:
+                names = names[2:]  # no program is generated from a Python file
+            elif not symbols.is_script(view.tree):
                 return []
             span = symbols.first_line(view.source)
             at = server.range(server.positions(view.source), span.start, span.end)
@@ -443,18 +451,19 @@ def _additions(server: Server) -> None:
             return [
                 lsp.CodeLens(range=at, command=lsp.Command(title=title, command=name,
                                                            arguments=[uri]))
-                for title, name in (("Run", "smachac.run"), ("Build", "smachac.build"),
-                                    ("Draw", "smachac.draw"))
+                for title, name in names
             ]  # fmt: skip
 
         return server.ask(params.text_document.uri, answer)
 
     @server.command("smachac.picture")
-    def drawn(uri: str) -> dict[str, Any] | None:
-        """The picture of a script as DOT, and the places of its states by node."""
+    def drawn(uri: str, *more: Any) -> dict[str, Any] | None:
+        """The picture of a script as DOT, and the places of its states by node. Of a Python file
+        it is that of the machine at a line, counted from 0: `more` begins with its number."""
+        line = next((number + 1 for number in more[:1] if isinstance(number, int)), None)
 
         def answer(view: View, path: str) -> dict[str, Any] | None:
-            found = picture(view)
+            found = picture(view, line)
             if found is None:
                 return None
             text, places = found
@@ -471,6 +480,15 @@ def _additions(server: Server) -> None:
         return server.ask(uri, answer)
 
 
+def symbols_of(view: View) -> list[symbols.Symbol]:
+    """The symbols of a text."""
+    if view.python is None:
+        return symbols.symbols(view.tree)
+    from smachac.lsp import python_view
+
+    return python_view.symbols(view.python)
+
+
 def _symbol_kind(symbol: symbols.Symbol) -> lsp.SymbolKind:
     return lsp.SymbolKind.Class if symbol.is_container else lsp.SymbolKind.Function
 
@@ -482,7 +500,9 @@ def _changes(server: Server) -> None:
     def formatting(params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit] | None:
         path = server.path_of(params.text_document.uri)
         source = server.session.source(path) if path is not None else None
-        if path is None or source is None or server.session.disk.parse(source, []) is None:
+        if path is None or source is None or is_python(path):
+            return None
+        if server.session.disk.parse(source, []) is None:
             return None
         if server.session.kind(path) not in ("script", "interface"):
             return None

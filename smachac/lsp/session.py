@@ -20,7 +20,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import CODES, Analysis, IncrementalState, read_machine
 from smachac.driver.batch import Batch, check_scripts
 from smachac.frontend.config import PROJECT_FILES
-from smachac.frontend.discovery import NothingFoundError, scripts_of
+from smachac.frontend.discovery import PYTHON_SUFFIX, NothingFoundError, scripts_of
 from smachac.frontend.files import Disk, disk_library, find_project
 from smachac.frontend.loader import Library
 from smachac.frontend.robots.robots import DataKind, check_data_file
@@ -31,6 +31,10 @@ from smachac.ir.nodes import Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.lsp.repair import repaired
 from smachac.records import dataclass
+
+TYPE_CHECKING = False  # annotations only: few sessions have Python files
+if TYPE_CHECKING:
+    from smachac.lsp.python_view import PythonFiles, PythonView
 
 
 @contextmanager
@@ -45,13 +49,22 @@ def collection_paused() -> Iterator[None]:
             gc.enable()
 
 
+def is_python(path: str) -> bool:
+    """Whether a file is in Python."""
+    return path.endswith(PYTHON_SUFFIX)
+
+
+def _file_of(item: Diagnostic) -> str:
+    return os.path.realpath(item.span.source.name)
+
+
 @dataclass(frozen=True, kw_only=True)
 class View:
     """A text as the answers to questions about it need it, as far as it can be read.
 
     `source` has the offsets of the present text; its syntax errors are blanked. `context` has the
     facts of the machine that uses the text: its own, or that of a script that calls it. Only
-    scripts and interfaces have a tree here.
+    scripts and interfaces have a tree here; `python` are the machines of a Python file.
     """
 
     source: Source
@@ -59,6 +72,7 @@ class View:
     library: Library
     context: Context | None
     kind: FileKind = "script"
+    python: PythonView | None = None
 
     @property
     def machine(self) -> Machine | None:
@@ -81,6 +95,16 @@ class Session:
         self._views: dict[str, View] = {}
         self._checked: dict[str, dict[str, Report]] = {}
         self._listed: dict[tuple[Path, ...], list[Path]] = {}
+        self._python: PythonFiles | None = None
+
+    @property
+    def python(self) -> PythonFiles:
+        """The Python files, whose reader is imported with the first of them."""
+        if self._python is None:
+            from smachac.lsp.python_view import PythonFiles
+
+            self._python = PythonFiles(self.disk)
+        return self._python
 
     def change(self, path: str, text: str) -> None:
         """The editor opens a text, or changes it."""
@@ -94,6 +118,9 @@ class Session:
     def close(self, path: str) -> None:
         """The editor closes a text: from now on the file on disk counts."""
         self.open.pop(path, None)
+        if is_python(path):
+            self.python.close(path)
+            self._uses.pop(path, None)
         self.disk.replace(Path(path), None)
         self._forget([path])
 
@@ -110,6 +137,8 @@ class Session:
         self._contexts.clear()
         self._previous.clear()
         self._listed.clear()
+        if self._python is not None:
+            self._python.list_again()
 
     def source(self, path: str) -> Source | None:
         """The present text of a file."""
@@ -149,6 +178,8 @@ class Session:
 
     def script_roots(self, path: str) -> list[str]:
         """The scripts, not sub-scripts, by which a text is checked."""
+        if is_python(path):
+            return []
         return [root for root in self.roots(path) if isinstance(self._tree(root), Map)]
 
     def _forget(self, changed: Iterable[str]) -> None:
@@ -159,6 +190,8 @@ class Session:
         if gone:
             self._views.clear()
             self._checked.clear()
+            if self._python is not None:
+                self._python.forget(gone)
 
     def _roots_using(self, paths: set[str]) -> list[str]:
         return [root for root, used in self._uses.items() if root in paths or used & paths]
@@ -207,7 +240,8 @@ class Session:
         """The repair of a finding in a script, searched now; None without one."""
         from smachac.repair.search import again, clusters
 
-        for root in self._known_roots(path) if self.kind(path) == "script" else ():
+        is_script = not is_python(path) and self.kind(path) == "script"
+        for root in self._known_roots(path) if is_script else ():
             analysis, _ = self._contexts[root]
             mine = [other for other in analysis.report if identity(other) == identity(item)]
             with collection_paused():
@@ -216,6 +250,8 @@ class Session:
         return None
 
     def _check(self, path: str) -> dict[str, Report]:
+        if is_python(path):
+            return self._check_python(path)
         kind = self.kind(path)
         if kind == "interface":
             return self._check_interface(path)
@@ -260,6 +296,27 @@ class Session:
         for item in in_order(report):
             found.setdefault(os.path.realpath(item.span.source.name), []).append(item)
         return found
+
+    def _check_python(self, path: str) -> dict[str, Report]:
+        """The findings about the machines in a Python file, and those in it of other open texts
+        that use it."""
+        report = self._python_report(path)
+        for user in [user for user in self.open if user != path]:
+            if path in self._uses.get(user, ()):
+                others = (self._python_report(user) if is_python(user)
+                          else self.check(user).get(path, []))  # fmt: skip
+                report += [item for item in others if _file_of(item) == path]
+        found: dict[str, Report] = {path: []}
+        known = {identity(item): item for item in report}
+        for item in in_order(known.values()):
+            found.setdefault(_file_of(item), []).append(item)
+        return found
+
+    def _python_report(self, path: str) -> Report:
+        """The findings about the machines in a Python file."""
+        read = self.python.file(path)
+        self._uses[path] = read[1] if read is not None else frozenset()
+        return [*read[0].report] if read is not None else []
 
     def _check_project(self, path: str) -> dict[str, Report]:
         """The findings in a project file."""
@@ -307,6 +364,8 @@ class Session:
         source = self.disk.read(Path(path), [])
         if source is None:
             return None
+        if is_python(path):
+            return self._python_view(path)
         kind = self.kind(path)
         if kind not in ("script", "interface"):
             library = self._library(path)
@@ -321,6 +380,14 @@ class Session:
                 return View(source=source, tree=tree, library=library, context=context, kind=kind)
         library = self._library(path)
         return View(source=source, tree=tree, library=library, context=None, kind=kind)
+
+    def _python_view(self, path: str) -> View | None:
+        """The view of a Python file that builds machines; None of another one."""
+        found = self.python.view(path)
+        if found is None:
+            return None
+        return View(source=found.source, tree=None, library=self._library(path), context=None,
+                    python=found)  # fmt: skip
 
     def _known_roots(self, path: str) -> list[str]:
         """The analysed scripts that use a text; they are analysed now if there is none."""

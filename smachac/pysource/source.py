@@ -40,8 +40,11 @@ class PythonText:
 
     def offset(self, line: int, column: int) -> int:
         """The offset in characters of a column in bytes of UTF-8, as `ast` counts them."""
-        before = self.source.line(line).encode("utf-8", "surrogatepass")[:column]
-        return self.source.line_starts[line - 1] + len(before.decode("utf-8", "surrogatepass"))
+        start, text = self.source.line_starts[line - 1], self.source.line(line)
+        if text.isascii():
+            return start + min(column, len(text))
+        before = text.encode("utf-8", "surrogatepass")[:column]
+        return start + len(before.decode("utf-8", "surrogatepass"))
 
     def is_filled(self, span: Span) -> bool:
         return bool(self.fillings(span))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import codecs
 import re
 
-_XML = (".urdf", ".xacro", ".xml")
+_XML = (".urdf", ".xacro", ".xml", ".scxml")
 _PYTHON = ".py"
 _TEMPLATE = ".tpl.py"
 _CPP = (".h", ".hh", ".hpp", ".hxx")

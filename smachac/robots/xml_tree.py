@@ -1,4 +1,4 @@
-"""XML as a tree of elements with their places in the text, for robot files (URDF, xacro).
+"""XML as a tree of elements with their places in the text: robot files (URDF, xacro) and imports.
 
 The parser is expat. A document type is refused, because it can expand a small file to a huge one or
 refer to other files; size, depth and number of elements are bounded.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 from xml.parsers import expat
 
 MAX_CHARACTERS = 5_000_000
@@ -20,6 +20,18 @@ TextPlace: TypeAlias = tuple[int, int]
 
 TOO_LARGE = "name a smaller URDF file: one robot, without its meshes in the text"
 FIRST_TAG = "name a URDF file: its first tag is `<robot name=...>`"
+
+
+class FormatHelp(NamedTuple):
+    """The helps that name the format of a file: for a text that is empty, for one with something
+    outside of all tags, and for one that is too large."""
+
+    empty: str
+    outside: str
+    too_large: str
+
+
+URDF = FormatHelp(FIRST_TAG, "the first tag of a URDF file is `<robot name=...>`", TOO_LARGE)
 
 
 class XmlError(ValueError):
@@ -63,9 +75,9 @@ class Element:
         return self.start, self.end
 
 
-def parse(text: str) -> Element:
+def parse(text: str, format: FormatHelp = URDF) -> Element:
     """The outermost element of an XML text. Raises XmlError."""
-    return _Reader(text).read()
+    return _Reader(text, format).read()
 
 
 _HELP = {
@@ -81,9 +93,6 @@ _HELP = {
         "add the end of what starts here: `>` of a tag, or `-->` of a comment"
     ),
     expat.errors.codes[expat.errors.XML_ERROR_UNCLOSED_CDATA_SECTION]: "add `]]>`",
-    expat.errors.codes[expat.errors.XML_ERROR_SYNTAX]: (
-        "remove the text outside of all tags; the first tag of a URDF file is `<robot name=...>`"
-    ),
     expat.errors.codes[expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT]: (
         "a file has one outermost element: move what follows it into it, or remove it"
     ),
@@ -94,8 +103,9 @@ _TOKEN = 'write an attribute as `name="value"`, and `&lt;` and `&amp;` for `<` a
 class _Reader:
     """Receives the elements from expat."""
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, format: FormatHelp) -> None:
         self.text = text
+        self.format = format
         self.lines = [0, *(found.end() for found in re.finditer(r"\r\n|\r|\n", text))]
         self.root: Element | None = None
         self.open: list[Element] = []
@@ -106,9 +116,9 @@ class _Reader:
     def read(self) -> Element:
         if len(self.text) > MAX_CHARACTERS:
             message = f"the file has {len(self.text):,} characters, more than {MAX_CHARACTERS:,}"
-            raise XmlError(message, (0, 0), TOO_LARGE)
+            raise XmlError(message, (0, 0), self.format.too_large)
         if not self.text.strip():
-            raise XmlError("the file is empty", (0, 0), FIRST_TAG)
+            raise XmlError("the file is empty", (0, 0), self.format.empty)
         parser = self.parser
         parser.StartElementHandler = self.start
         parser.EndElementHandler = self.end
@@ -136,7 +146,7 @@ class _Reader:
         self.count += 1
         if self.count > MAX_ELEMENTS or len(self.open) > MAX_DEPTH:
             message = f"it has more than {MAX_ELEMENTS:,} elements, or more than {MAX_DEPTH} levels"
-            raise XmlError(message, self.here(), TOO_LARGE)
+            raise XmlError(message, self.here(), self.format.too_large)
         element = Element(tag, attributes, self.here()[0], self.parser.CurrentLineNumber)
         element.end = _tag_end(self.text, element.start)
         if self.open:
@@ -166,7 +176,10 @@ class _Reader:
             help = "write `-->` at the end of the comment"
             return XmlError("a comment is not closed", (start, start + 4), help)
         message = f"the file is not valid XML: {expat.ErrorString(error.code)}"
-        return XmlError(message, place, _HELP.get(error.code, _TOKEN))
+        help = _HELP.get(error.code, _TOKEN)
+        if error.code == codes[errors.XML_ERROR_SYNTAX]:
+            help = f"remove the text outside of all tags; {self.format.outside}"
+        return XmlError(message, place, help)
 
     def mismatch(self, start: int) -> XmlError:
         """The error for an end tag whose name is at `start`, and not that of the innermost open

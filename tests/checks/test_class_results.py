@@ -104,7 +104,8 @@ def test_an_outcome_in_a_local_variable_is_that_of_the_helper() -> None:
     assert with_helper("True") == [("SM309", "True")]
     examined = ("print(outcome)", 'if outcome is True:\n            return "found"')
     assert with_helper("True", examined) == []
-    assert with_helper("True", ("print(outcome)", 'outcome = "found"')) == []
+    replaced = with_helper("True", ("print(outcome)", 'outcome = "found"'))
+    assert [code for code, _ in replaced] == ["SM315"]  # no path returns what the helper returns
 
 
 @pytest.mark.parametrize(

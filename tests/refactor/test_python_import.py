@@ -22,7 +22,7 @@ from smachac.frontend.files import Disk
 from smachac.ir.nodes import Key, Leaf, Node, Outcome
 from smachac.pysource.machines import evaluator
 from smachac.refactor.equivalence import map_nodes
-from smachac.refactor.python_import.proof import differences
+from smachac.refactor.imports.proof import differences
 from tests.conformance.standalone_smach import FOLDER
 from tests.pysource.machines.test_no_execution import CODE, MACHINE
 from tests.support.examples import every

@@ -16,8 +16,8 @@ ALLOWED = {
     "targets/scxml/leaves.py": "their states in SCXML",
     "frontend/resolved_script.py": "the timer, which sugar adds to a machine",
     "pysource/machines/yasmin_library.py": "the classes of yasmin_ros of the same names",
-    "refactor/python_import/scripts.py": "the base of a machine that is a ROS node",
-    "refactor/python_import/state_types.py": "the types for classes of smach_ros",
+    "refactor/imports/scripts.py": "the base of a machine that is a ROS node",
+    "refactor/imports/state_types.py": "the types for classes of smach_ros",
     "refactor/smacha/template_differences.py": "the templates that templates of SMACHA extend",
 }
 

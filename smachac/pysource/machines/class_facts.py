@@ -38,6 +38,16 @@ class ClassReader:
         self.choices: dict[ast.ClassDef, tuple[Choice, ...]] = {}
         self.places: dict[ast.ClassDef, tuple[Span, ...]] = {}
 
+    def forget(self, file: str) -> None:
+        """Forgets the classes and comments of a file that has another text now."""
+        gone = {cls.node for cls, _ in self.facts.values() if cls.frame.module.file == file}
+        self.facts = {key: known for key, known in self.facts.items() if known[0].node not in gone}
+        for node in gone:
+            self.choices.pop(node, None)
+            self.places.pop(node, None)
+        self.modules.pop(file, None)
+        self.comments.forget(file)
+
     def of_callback(
         self, function: Function, *, bound: bool, given: frozenset[str] = frozenset()
     ) -> ClassFacts | None:
@@ -66,10 +76,11 @@ class ClassReader:
             facts = None
             if module is not None:
                 facts = facts_of(module, cls.node, self.library, whole=self.whole)
-            if facts is not None and any(fault.kind is NO_EXECUTE for fault in facts.faults):
-                facts = self._without_execute(facts)
             known = self.facts[id(cls.node)] = cls, facts
-        return known[1]
+        facts = known[1]
+        if facts is not None and any(fault.kind is NO_EXECUTE for fault in facts.faults):
+            return self._without_execute(facts)
+        return facts
 
     def _without_execute(self, facts: ClassFacts) -> ClassFacts:
         """The facts about a class without a method `execute`: no fault if other code sets it."""

@@ -86,7 +86,8 @@ class Construction:
     reason `obstacle`. `library` is the name of a class of SMACH that the code uses itself, `short`
     a name for the state type. `types` are the types of ROS in the arguments, by the parameter:
     `std_srvs/SetBool`. `file` has the class, `cls_span` is its place, `doc` the first line of its
-    docstring. `node`: the first argument was the node of ROS 2."""
+    docstring. `node`: the first argument was the node of ROS 2. `parameters` are the values for a
+    class that is to be written, where there is an `obstacle`."""
 
     span: Span
     cls: ClassPlace | None = None
@@ -94,6 +95,7 @@ class Construction:
     short: str = ""
     obstacle: str = ""
     arguments: tuple[Argument, ...] = ()
+    parameters: tuple[Argument, ...] = ()
     types: Mapping[str, str] = field(default_factory=dict)
     file: str = ""
     doc: str = ""

@@ -7,6 +7,7 @@ import os
 import re
 from collections.abc import Callable, Iterable
 from pathlib import PurePath
+from typing import Protocol
 
 from smachac.diagnostics.source import Source
 from smachac.pysource.machines.evaluator import BudgetError, Evaluator
@@ -31,15 +32,28 @@ from smachac.pysource.python2 import NotInstalledError, python2_text
 from smachac.pysource.source import PythonText, python_text
 
 
+class ModuleParser(Protocol):
+    """Parses the text of a module, as `module_text` does."""
+
+    def __call__(self, source: Source, *, compiled: bool) -> PythonText | None: ...
+
+
 class Repository:
-    """The Python files of a repository by name. `read(file)` returns the text of one.
+    """The Python files of a repository by name. `read(file)` returns the text of one, `parse` its
+    tree, as `module_text` does.
 
     A module `a.b` is the file whose path ends with `a/b.py` or `a/b/__init__.py`; of several, the
     one that shares the most folders with the file that imports it.
     """
 
-    def __init__(self, files: Iterable[str], read: Callable[[str], Source | None]) -> None:
+    def __init__(
+        self,
+        files: Iterable[str],
+        read: Callable[[str], Source | None],
+        parse: ModuleParser | None = None,
+    ) -> None:
         self.read = read
+        self.parse = parse or module_text
         self.by_stem: dict[str, list[str]] = {}
         for file in files:
             path = PurePath(file)
@@ -116,7 +130,7 @@ class Repository:
         if key in self.loaded:
             return self.loaded[key]
         source = self.read(file)
-        text = module_text(source, compiled=main) if source is not None else None
+        text = self.parse(source, compiled=main) if source is not None else None
         if text is None:
             found = Unknown(reason=file)
             self.loaded[key] = found

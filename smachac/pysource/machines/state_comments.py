@@ -50,6 +50,12 @@ class StateComments:
                 self.used.add(place)
         return StateComment(**found)
 
+    def forget(self, file: str) -> None:
+        """Forgets the comments of a file that has another text now."""
+        self.by_source = {source: found for source, found in self.by_source.items()
+                          if source.name != file}  # fmt: skip
+        self.used = {place for place in self.used if place.source.name != file}
+
     def unused(self, source: Source) -> list[Span]:
         """The comments of a file that describe no state, or one that is known."""
         return [place for _, _, place, _ in self._of(source) if place not in self.used]

@@ -10,8 +10,8 @@ from smachac.ir.nodes import Iterator as IteratorNode
 from smachac.ir.nodes import Sequence as SequenceNode
 from smachac.ir.traversal import leads_to_child, outcome_names, remapping, written_children
 from smachac.pysource.machines.constructions import Callbacks, Constructions, Names
-from smachac.refactor.python_import.scripts import Rules, selected
-from smachac.refactor.python_import.state_types import is_optional
+from smachac.refactor.imports.scripts import Rules, selected
+from smachac.refactor.imports.state_types import is_optional
 
 
 def differences(

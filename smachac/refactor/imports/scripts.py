@@ -29,13 +29,13 @@ from smachac.pysource.machines.constructions import (
     Outcomes,
 )
 from smachac.records import dataclass, field
-from smachac.refactor.python_import.state_types import (
+from smachac.refactor.imports.state_types import (
     OWN_MODULE,
     StateTypes,
     in_comment,
     keys_text,
 )
-from smachac.refactor.python_import.yaml_text import (
+from smachac.refactor.imports.yaml_text import (
     data_text,
     mapping_text,
     name_text,

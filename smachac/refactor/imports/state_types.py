@@ -17,7 +17,7 @@ from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type
 from smachac.pysource.machines.constructions import Argument, Construction
 from smachac.records import dataclass, field
-from smachac.refactor.python_import.yaml_text import mapping_text, name_text, names_text, quoted
+from smachac.refactor.imports.yaml_text import mapping_text, name_text, names_text, quoted
 
 OPTIONAL = Type("optional", (ANY,))
 
@@ -192,7 +192,8 @@ def _split(
     """The arguments that a class of the import passes as they are, as code; the variables of the
     state; and the parameter for which each variable is, which is empty for one with a place."""
     if construction.obstacle:
-        return (), {}, {}
+        given = {argument.name: argument for argument in construction.parameters}
+        return (), {_variable(name): argument for name, argument in given.items()}, {}
     fixed: list[str] = []
     variables: dict[str, Argument] = {}
     passed: dict[str, str] = {}
@@ -203,7 +204,7 @@ def _split(
         if wrapped and name and isinstance(argument.data, Expression):
             fixed.append(f"{name}={argument.data.text}")
             continue
-        variable = f"{name}_argument" if name in RESERVED else name or f"argument_{at}"
+        variable = _variable(name) if name else f"argument_{at}"
         variables[variable] = argument
         passed[variable] = name
     if construction.library:
@@ -211,6 +212,12 @@ def _split(
         fixed += [f"{name}={[key.name for key in keys]!r}" for name, keys in
                   (("input_keys", leaf.inputs), ("output_keys", leaf.outputs)) if keys]  # fmt: skip
     return tuple(fixed), variables, passed
+
+
+def _variable(parameter: str) -> str:
+    """The variable for a parameter, which has no name of a field."""
+    name = re.sub(r"\W+", "_", parameter)
+    return f"{name}_argument" if name in RESERVED or not name.isidentifier() else name
 
 
 def _interface(made: ImportedType) -> str:
@@ -287,10 +294,14 @@ def _stub(made: ImportedType) -> list[str]:
         "output_keys": [key.name for key in leaf.outputs],
     }
     given = [f"            {name}={names!r}," for name, names in lists.items() if names]
+    counts = sorted(made.variables.items(), key=lambda item: item[1] < made.states)
+    parameters = "".join(f", {name}" if count == made.states else f", {name}=None"
+                         for name, count in counts)  # fmt: skip
     why = re.sub(r'[\\"]', "'", f"{made.place}: {made.construction.obstacle}.")
     return [
         f"class {made.name}(smach.State):", f'    """{why}"""', "",
-        "    def __init__(self):", "        super().__init__(", *given, "        )", "",
+        f"    def __init__(self{parameters}):", "        super().__init__(", *given, "        )",
+        *(f"        self.{name} = {name}" for name in made.variables), "",
         "    def execute(self, userdata):",
         f"        raise NotImplementedError({made.place!r})",
     ]  # fmt: skip

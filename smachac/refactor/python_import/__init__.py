@@ -1,1 +1,0 @@
-"""Scripts made of machines in Python for SMACH (docs/existing.md)."""
