@@ -148,12 +148,15 @@ def successors(
 
 
 def followed(text: str, found: Mapping[Entry, Sequence[Diagnostic]]) -> str:
-    """A baseline in which findings are replaced by their successors; the same text if it has none
-    of them, or another version."""
+    """A baseline, which `read` accepts, with findings replaced by their successors; the same text
+    if it has none of them, or another version."""
     data = json.loads(text)
     if data["version"] != VERSION:
         return text
-    rows = {tuple(str(row[field]) for field in FIELDS): dict(row) for row in data["findings"]}
+    rows = {
+        tuple(str(row[field]) for field in FIELDS): {**row, "count": int(row["count"])}
+        for row in data["findings"]
+    }
     changed = False
     for entry, others in found.items():
         for other in others:
@@ -164,7 +167,7 @@ def followed(text: str, found: Mapping[Entry, Sequence[Diagnostic]]) -> str:
             if rows[entry]["count"] <= 0:
                 del rows[entry]
             row = rows.setdefault(_entry_of(other), _row(other, 0))
-            row["count"] += 1  # type: ignore[operator]
+            row["count"] += 1
     return _text(rows.values()) if changed else text
 
 

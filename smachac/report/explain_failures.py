@@ -53,7 +53,10 @@ def _text(name: str, found: Sequence[Failure]) -> str:
 
 def _summary(found: Sequence[Failure]) -> str:
     if not found:
-        return "no state can fail"
+        return (
+            "no outcome of a state means a failure;"
+            " `outcomes: {NAME: {failure: true}}` at a state, or in its interface, declares one"
+        )
     answers = Counter(failure.answer for failure in found)
     count = len({(failure.path, failure.outcome) for failure in found})
     paths = f" on {len(found)} paths" if len(found) > count else ""

@@ -22,7 +22,8 @@ MOST_PATHS = 400
 
 def outcome_scenarios(machine: Machine, script: str, outcomes: Collection[str]) -> dict[str, str]:
     """For each of `outcomes` of a machine the text of a scenario that ends with it: of the paths
-    that were tried, the one with the fewest visits. An outcome that no path reached is missing.
+    that were tried, the one with the fewest visits, without a request to stop if there is one. An
+    outcome that no path reached is missing.
     Each scenario was played once, as `smachac run SCRIPT --mock` plays it."""
     found: dict[str, Path] = {}
     for path in PathGenerator(machine, most=MOST_PATHS).paths():
@@ -32,13 +33,19 @@ def outcome_scenarios(machine: Machine, script: str, outcomes: Collection[str]) 
         if outcome is None or outcome not in outcomes:
             continue
         best = found.get(outcome)
-        if best is None or path.visits < best.visits:
+        if best is None or _rank(path) < _rank(best):
             found[outcome] = path
     return {
         name: _text(machine, found[name].scenario, script, name)
         for name in outcomes
         if name in found
     }
+
+
+def _rank(path: Path) -> tuple[int, int]:
+    """The place of a path among those with its outcome: its requests to stop, then its visits."""
+    steps = [step for row in path.scenario.steps.values() for step in row]
+    return sum(step.stop for step in steps), path.visits
 
 
 def _outcome(machine: Machine, scenario: Scenario) -> str | None:

@@ -386,6 +386,27 @@ def test_scenarios_are_of_outcomes_of_the_script(
     assert not (errand / "scenarios").exists()
 
 
+def test_a_scenario_asks_for_no_stop_without_need(tmp_path: Path) -> None:
+    """Of two paths with as many visits, one with a request to stop is not taken."""
+    script = tmp_path / "main.yml"
+    script.write_text(
+        "name: sm\noutcomes: [done, lost]\nstates:\n"
+        "  - BOX:\n      template: StateMachine\n      outcomes: [nothing]\n"
+        "      transitions: {nothing: CARRY}\n      states:\n"
+        "        - A: {template: ScriptedState, outcomes: [found, nothing],"
+        " transitions: {found: B, nothing: nothing}}\n"
+        "        - B: {template: ScriptedState, outcomes: [there, blocked],"
+        " transitions: {there: nothing, blocked: A}}\n"
+        "  - CARRY: {template: ScriptedState, outcomes: [there, dropped],"
+        " transitions: {there: done, dropped: lost}}\n",
+        "utf-8",
+    )
+    assert main(["new", "scenario", str(script)]) == 0
+    texts = [path.read_text("utf-8") for path in sorted(tmp_path.glob("scenarios/*.yml"))]
+    assert len(texts) == 2
+    assert "stop" not in "".join(texts)
+
+
 def test_a_stub_looks_for_a_request_to_stop(project: Path) -> None:
     assert main(["new", "state", "Grasp", "--outcome", "held", "--outcome", "preempted"]) == 0
     names: dict[str, Any] = {}

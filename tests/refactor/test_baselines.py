@@ -90,7 +90,12 @@ def test_only_the_findings_in_a_baseline_follow(
     assert "`TWO`" in news(capsys)
     other = {"version": 3, "findings": [], "notes": "not touched"}
     Path("other.json").write_text(json.dumps(other), "utf-8")
+    bad = ['{"version": 3, "findings": [{"fingerprint": 1}]}', '{"version": 3, "findings": 7}',
+           '["fingerprint"]', '"fingerprint']  # fmt: skip
+    for number, text in enumerate(bad):
+        Path(f"bad_{number}.json").write_text(text, "utf-8")
     assert main(["rename", "robot/main.yml", "TWO", "TOO"]) == 0
+    assert [Path(f"bad_{number}.json").read_text("utf-8") for number in range(4)] == bad
     assert json.loads(Path("other.json").read_text("utf-8")) == other
 
 

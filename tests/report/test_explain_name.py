@@ -161,3 +161,8 @@ def test_an_input_key_of_the_machine_is_a_promise_of_its_caller(
             line.strip().partition(" (")[0] for line in lines if " set (" in line or "it (" in line
         ]
         assert found == reads
+
+
+def test_without_a_failure_the_report_says_how_one_is_declared() -> None:
+    text = render_failures("sm", [], "text")
+    assert text.startswith("sm: no outcome of a state means a failure; `outcomes: {NAME: {failure")
