@@ -205,7 +205,7 @@ def make_server() -> Server:
     logging.getLogger("pygls.protocol.json_rpc").addFilter(_is_fault)
     server = Server()
     _documents(server)
-    for features in (_words, _places, _structure, _additions, _changes, _code_actions):
+    for features in (_words, _places, _structure, _additions, _pictures, _changes, _code_actions):
         features(server)
     return server
 
@@ -405,7 +405,7 @@ def _structure(server: Server) -> None:
 
 
 def _additions(server: Server) -> None:
-    """What editors show in addition to a text: colours, hints, lenses, the picture."""
+    """What editors show in addition to a text: colours, hints, lenses."""
 
     legend = lsp.SemanticTokensLegend(token_types=list(symbols.TOKEN_KINDS), token_modifiers=[])
 
@@ -455,6 +455,10 @@ def _additions(server: Server) -> None:
             ]  # fmt: skip
 
         return server.ask(params.text_document.uri, answer)
+
+
+def _pictures(server: Server) -> None:
+    """The picture of a machine beside its text."""
 
     @server.command("smachac.picture")
     def drawn(uri: str, *more: Any) -> dict[str, Any] | None:

@@ -344,7 +344,7 @@ def test_wrong_assumptions(
 
 
 @pytest.mark.parametrize(("arguments", "words"), [
-    (["main.yml"], "main.yml is no Python file"),
+    (["main.yml"], "main.yml is no Python, SCXML or XML file"),
     (["machine.py", "--machine", "Toru"], "machine.py has no machine `Toru`\ndid you mean `Tour`?"),
 ])  # fmt: skip
 def test_wrong_usage(

@@ -236,6 +236,16 @@ def test_a_file_that_cannot_be_read_has_a_finding(text: str, word: str, tmp_path
     assert "URDF" not in f"{finding.message} {finding.help}"
 
 
+def test_a_transition_that_a_script_implies_is_named(tmp_path: Path) -> None:
+    text = f"""{HEAD}><state id="c"><state id="a"><transition event="x" target="c.end"/></state>
+      <final id="c.end"/></state><state id="b"><transition event="x" target="end"/></state>
+      <final id="end"/></scxml>"""
+    made = imported(text, tmp_path)
+    ((line, found),) = lost(made)
+    assert (line, "no transition after `end`" in found) == (1, True)
+    assert [proof.differences for proof in made.proofs] == [()]
+
+
 def test_a_container_without_states_is_not_imported(tmp_path: Path) -> None:
     for text in (f"{HEAD}></scxml>", f"{HEAD}><state id='a'><final id='b'/></state></scxml>"):
         made = imported(text, tmp_path)

@@ -9,7 +9,7 @@ generates (targets/scxml) are recognized: the states and events of their own are
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -383,7 +383,21 @@ class _Reader(XmlText):
                 outcome = left.pop(self.id(final), None)
                 if outcome is not None:
                     named.append((outcome, step))
-        return self.edges(element, scope, named)
+        return self.with_ends(self.edges(element, scope, named), element, outcomes.values(), scope)
+
+    def with_ends(
+        self, edges: Edges, element: Element, outcomes: Iterable[str], scope: _Scope
+    ) -> Edges:
+        """The edges of a container with those that a script implies: an outcome without a
+        transition ends the container around it if that has an outcome of the name."""
+        found = dict(edges)
+        span = self.span(element, "id")
+        for outcome in outcomes:
+            if outcome not in found and outcome in scope.finals.values():
+                text = f"`{self.id(element)}` has no transition after `{outcome}`: the script ends"
+                self.lose(span, f"{text} the container around it", "write the transition")
+                found[outcome] = outcome, span, span
+        return found
 
     def lose_interrupt(self, element: Element, step: _Step) -> None:
         self.lose(self.span(step.element, "event" if step.event else ""),
@@ -559,6 +573,7 @@ class _Reader(XmlText):
             outcomes[default] = None
             self.lose(self.span(element), "after other outcomes of the branches, the parallel state"
                       " waits for ever", f"add a transition on `{default}`")  # fmt: skip
+        edges = self.with_ends(edges, element, outcomes, scope)
         return Concurrence(
             name=names[-1], type="Concurrence", children=tuple(children), default_outcome=default,
             default_span=default_span, rules=tuple(rules), transitions=transitions(edges),
