@@ -205,7 +205,8 @@ def make_server() -> Server:
     logging.getLogger("pygls.protocol.json_rpc").addFilter(_is_fault)
     server = Server()
     _documents(server)
-    for features in (_words, _places, _structure, _additions, _pictures, _changes, _code_actions):
+    parts = (_words, _places, _structure, _additions, _lenses, _pictures, _changes, _code_actions)
+    for features in parts:
         features(server)
     return server
 
@@ -405,7 +406,7 @@ def _structure(server: Server) -> None:
 
 
 def _additions(server: Server) -> None:
-    """What editors show in addition to a text: colours, hints, lenses."""
+    """What editors show in addition to a text: colours and hints."""
 
     legend = lsp.SemanticTokensLegend(token_types=list(symbols.TOKEN_KINDS), token_modifiers=[])
 
@@ -436,6 +437,10 @@ def _additions(server: Server) -> None:
                     for where, hint in found if first <= where[0] <= last]  # fmt: skip
 
         return server.ask(params.text_document.uri, answer)
+
+
+def _lenses(server: Server) -> None:
+    """The commands above the first line of a text."""
 
     @server.feature(lsp.TEXT_DOCUMENT_CODE_LENS)
     def lenses(params: lsp.CodeLensParams) -> list[lsp.CodeLens] | None:
