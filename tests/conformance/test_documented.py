@@ -51,11 +51,12 @@ DIFFERENT = {
     "T5": "test_set_initial_state_merges_userdata",
     "M16": "test_constants_are_written_before_each_entry",
     "U5": "test_copy_shares_the_store_and_deep_copy_and_pickle_do_not",
+    "L1": "test_default_loggers_print_a_line_but_for_debugging",
     "S1": "test_keys_and_outcomes_are_sets_in_order",
 }
 """Rule -> a test of what the runtime does instead."""
 
-SWITCHED = ("M9", "I2", "R7", "R8", "P2", "P9", "P10", "P8", "P7")
+SWITCHED = ("M9", "I2", "R7", "R8", "P2", "P9", "P10", "P8", "P7", "L1")
 
 KEPT = {
     "K2": "test_add_acts_on_the_innermost_container_whatever_it_is_called_on",
