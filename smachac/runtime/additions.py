@@ -33,7 +33,8 @@ class SleepState(smach.State):
         self.end_of_wait.set()
 
     def execute(self, userdata: Any) -> str:
-        self.end_of_wait.wait(self.time(userdata) if callable(self.time) else self.time)
+        seconds: Any = self.time(userdata) if callable(self.time) else self.time
+        self.end_of_wait.wait(seconds)
         self.end_of_wait.clear()
         if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
             self.service_preempt()

@@ -58,7 +58,8 @@ def layers(node: Node, path: str, value: Value) -> tuple[list[Layer], Node, str]
 def _retries(loop: Iterator, inner: Node, pause: Node | None = None) -> list[tuple[str, Doc]]:
     """The arguments of `with_retries` after the state. A stopped pause ends the try as `preempted`,
     or with the first outcome that leads to a new try."""
-    items = loop.items.data if loop.items is not None else ()
+    assert loop.items is not None
+    items = loop.items.data
     assert isinstance(items, tuple)
     again = list(loop.loop_outcomes)
     arguments: list[tuple[str, Doc]] = [("", repr(len(items)))]
