@@ -12,7 +12,9 @@ from smachac.interpreter.scenario import (
     scenario_text,
 )
 from smachac.ir.nodes import Machine
+from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.script_paths import walk_script
+from smachac.ir.written import written
 from smachac.verify.generate import PathGenerator
 from smachac.verify.paths import Path
 
@@ -23,9 +25,12 @@ MOST_PATHS = 400
 def outcome_scenarios(machine: Machine, script: str, outcomes: Collection[str]) -> dict[str, str]:
     """For each of `outcomes` of a machine the text of a scenario that ends with it: of the paths
     that were tried, the one with the fewest visits, without a request to stop if there is one. An
-    outcome that no path reached is missing.
+    outcome that no path reached is missing. A timer or a pause of a written state ends as
+    `preempted` only after a request to stop.
     Each scenario was played once, as `smachac run SCRIPT --mock` plays it."""
     found: dict[str, Path] = {}
+    parts = written(machine).parts
+    waits = {path for path, part in parts.items() if part.role != "state"}
     for path in PathGenerator(machine, most=MOST_PATHS).paths():
         if path.stopped or not path.ends:
             continue
@@ -33,7 +38,7 @@ def outcome_scenarios(machine: Machine, script: str, outcomes: Collection[str]) 
         if outcome is None or outcome not in outcomes:
             continue
         best = found.get(outcome)
-        if best is None or _rank(path) < _rank(best):
+        if best is None or _rank(path, waits) < _rank(best, waits):
             found[outcome] = path
     return {
         name: _text(machine, found[name].scenario, script, name)
@@ -42,10 +47,12 @@ def outcome_scenarios(machine: Machine, script: str, outcomes: Collection[str]) 
     }
 
 
-def _rank(path: Path) -> tuple[int, int]:
-    """The place of a path among those with its outcome: its requests to stop, then its visits."""
-    steps = [step for row in path.scenario.steps.values() for step in row]
-    return sum(step.stop for step in steps), path.visits
+def _rank(path: Path, waits: Collection[str]) -> tuple[int, int, int]:
+    """The place of a path among those with its outcome: the ends of `waits`, which are timers and
+    pauses, that only a request to stop causes; its requests to stop; its visits."""
+    steps = [(state, step) for state, row in path.scenario.steps.items() for step in row]
+    unasked = sum(state in waits and step.outcome == PREEMPTED for state, step in steps)
+    return unasked, sum(step.stop for _, step in steps), path.visits
 
 
 def _outcome(machine: Machine, scenario: Scenario) -> str | None:

@@ -407,6 +407,22 @@ def test_a_scenario_asks_for_no_stop_without_need(tmp_path: Path) -> None:
     assert "stop" not in "".join(texts)
 
 
+def test_a_pause_ends_as_preempted_after_a_request_to_stop_only(tmp_path: Path) -> None:
+    """A run on a robot has no other cause for it; nor has a simulation by clicks."""
+    script = tmp_path / "main.yml"
+    script.write_text(
+        "name: sm\noutcomes: [done, preempted]\nstates:\n"
+        "  - DRIVE:\n      template: ScriptedState\n      outcomes: [arrived, blocked]\n"
+        "      retry: {on: [blocked], max: 3, delay: 2s}\n"
+        "      transitions: {arrived: done, exhausted: done, preempted: preempted}\n",
+        "utf-8",
+    )
+    assert main(["new", "scenario", str(script), "--outcome", "preempted"]) == 0
+    text = (tmp_path / "scenarios" / "preempted.yml").read_text("utf-8")
+    assert "stop: true" in text
+    assert "PAUSE: preempted" not in text
+
+
 def test_a_stub_looks_for_a_request_to_stop(project: Path) -> None:
     assert main(["new", "state", "Grasp", "--outcome", "held", "--outcome", "preempted"]) == 0
     names: dict[str, Any] = {}
