@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import sys
 from pathlib import Path
 from typing import Any
@@ -409,18 +410,13 @@ def test_a_scenario_asks_for_no_stop_without_need(tmp_path: Path) -> None:
 
 def test_a_pause_ends_as_preempted_after_a_request_to_stop_only(tmp_path: Path) -> None:
     """A run on a robot has no other cause for it; nor has a simulation by clicks."""
-    script = tmp_path / "main.yml"
-    script.write_text(
-        "name: sm\noutcomes: [done, preempted]\nstates:\n"
-        "  - DRIVE:\n      template: ScriptedState\n      outcomes: [arrived, blocked]\n"
-        "      retry: {on: [blocked], max: 3, delay: 2s}\n"
-        "      transitions: {arrived: done, exhausted: done, preempted: preempted}\n",
-        "utf-8",
-    )
+    name = "14_delivery_round"
+    shutil.copytree(Path(__file__).parents[2] / "examples" / name, tmp_path / name)
+    script = tmp_path / name / "main.yml"
     assert main(["new", "scenario", str(script), "--outcome", "preempted"]) == 0
-    text = (tmp_path / "scenarios" / "preempted.yml").read_text("utf-8")
-    assert "stop: true" in text
-    assert "PAUSE: preempted" not in text
+    text = (script.parent / "scenarios" / "preempted.yml").read_text("utf-8")
+    assert "PAUSE" not in text
+    assert "preempted\n" in text.partition("\n")[2]
 
 
 def test_a_stub_looks_for_a_request_to_stop(project: Path) -> None:
