@@ -248,8 +248,9 @@ def _reachable_places(found: list[Edge]) -> dict[Vertex, None]:
     """The places that can be reached from the start."""
     import networkx as nx
 
-    graph = nx.DiGraph((edge.source, edge.target) for edge in found)
+    graph = nx.DiGraph()
     graph.add_node(START)
+    graph.add_edges_from((edge.source, edge.target) for edge in found)
     return dict.fromkeys(nx.dfs_preorder_nodes(graph, START))
 
 
@@ -257,9 +258,10 @@ def _distances_to(found: list[Edge], ends: list[Vertex]) -> dict[Vertex, int]:
     """For each place, the number of edges to the nearest of some ends."""
     import networkx as nx
 
-    reverse = nx.DiGraph((edge.target, edge.source) for edge in found)
+    reverse = nx.DiGraph()
     source = ("source of the search",)  # one node before all ends: no name of a state is a tuple
     reverse.add_node(source)
+    reverse.add_edges_from((edge.target, edge.source) for edge in found)
     reverse.add_edges_from((source, end) for end in ends)
     lengths = nx.single_source_shortest_path_length(reverse, source)
     return {place: length - 1 for place, length in lengths.items() if place != source}

@@ -9,8 +9,10 @@ from typing import Any
 
 import pytest
 
+import smachac
 from tests.conformance.standalone_smach import FOLDER, ROOT, results, run_python
 from tests.support.examples import every
+from tests.targets.test_additions import WAIT, written
 
 CASES: list[Any] = [
     case
@@ -60,3 +62,16 @@ def test_the_program_of_an_example_with_stand_in_states(example: str) -> None:
     done = run_python(VERIFY, f"examples/{example}/main.yml")
     assert done.returncode == 0, done.stdout + done.stderr
     assert "python: agrees" in done.stdout
+
+
+@pytest.mark.parametrize("options", [{}, {"standalone": "true"}, {"ros": "1"}])
+def test_a_program_with_a_time_limit(options: dict[str, str], tmp_path: Path) -> None:
+    (text,) = smachac.compile(
+        written(tmp_path, WAIT.format("WAIT")), "python", options=options
+    ).values()
+    assert ("smachac.runtime.additions" in text) is (options == {})
+    hidden = "import sys; sys.modules['smachac'] = None; " if options else ""
+    (tmp_path / "sm.py").write_text(text, "utf-8")
+    done = run_python(f"{hidden}import runpy; runpy.run_path('sm.py', run_name='__main__')",
+                      cwd=tmp_path)  # fmt: skip
+    assert (done.returncode, done.stdout.splitlines()[-1]) == (0, "outcome: good"), done.stderr

@@ -13,7 +13,6 @@ import smachac
 from smachac.runtime import smach
 from smachac.runtime.additions import SleepState, with_retries, with_timeout
 from smachac.targets import OptionError
-from tests.conformance.standalone_smach import FOLDER, run_python
 from tests.verify.test_verify import judged
 
 TOUR = """\
@@ -128,21 +127,6 @@ def test_the_functions_take_any_state() -> None:
     assert machine.userdata.n == 23
     late = with_timeout(SleepState(60.0), 0.01)
     assert late.execute() == "timeout"
-
-
-@pytest.mark.parametrize("options", [{}, {"standalone": "true"}, {"ros": "1"}])
-def test_a_program_runs_on_smach(options: dict[str, str], tmp_path: Path) -> None:
-    if not FOLDER.exists():
-        pytest.skip("standalone-smach is not installed: scripts/setup.sh dev")
-    (text,) = smachac.compile(
-        written(tmp_path, WAIT.format("WAIT")), "python", options=options
-    ).values()
-    assert ("smachac.runtime.additions" in text) is (options == {})
-    hidden = "import sys; sys.modules['smachac'] = None; " if options else ""
-    (tmp_path / "sm.py").write_text(text, "utf-8")
-    done = run_python(f"{hidden}import runpy; runpy.run_path('sm.py', run_name='__main__')",
-                      cwd=tmp_path)  # fmt: skip
-    assert (done.returncode, done.stdout.splitlines()[-1]) == (0, "outcome: good"), done.stderr
 
 
 def test_a_run_prints_no_debug_lines(tmp_path: Path) -> None:
