@@ -360,7 +360,7 @@ def _true_of_all(findings: Report, machines: Sequence[Machine]) -> Iterator[Diag
 def _of_uses(faults: Sequence[UseFault]) -> Iterator[Diagnostic]:
     """The findings about wrong uses of a framework; the names that a module lacks are one for each
     file that uses them."""
-    members: dict[tuple[Source, str], list[Word]] = {}
+    members: dict[tuple[Source, str, str], list[Word]] = {}
     for fault in dict.fromkeys(faults):
         name = fault.names[0] if fault.names else ""
         match fault.kind:
@@ -369,7 +369,7 @@ def _of_uses(faults: Sequence[UseFault]) -> Iterator[Diagnostic]:
             case "shared transitions":
                 yield errors.shared_transitions(fault.span, name, fault.other)
             case "missing member":
-                which = fault.span.source, fault.names[1]
+                which = fault.span.source, *fault.names[1:]
                 members.setdefault(which, []).append(Word(name, fault.span))
             case "repeated key":
                 yield errors.repeated_key(Word(name, fault.span), fault.other)
@@ -377,8 +377,8 @@ def _of_uses(faults: Sequence[UseFault]) -> Iterator[Diagnostic]:
                 yield errors.state_named_as_outcome(Word(name, fault.span))
             case "no such start state":
                 yield errors.no_start_state(Word(name, fault.span))
-    for (_, module), words in members.items():
-        yield errors.missing_member(module, words)
+    for (_, module, home), words in members.items():
+        yield errors.missing_member(module, words, home)
 
 
 def graphs_by_name(file: PythonFile) -> Mapping[str, Graph]:

@@ -559,6 +559,8 @@ _DICT_METHODS: Mapping[str, Callable[[Interpreter, Arguments, Span | None], Valu
     "keys": _parts(0),
     "values": _parts(1),
     "items": _parts(None),
+    "iterkeys": _parts(0),
+    "itervalues": _parts(1),
     "iteritems": _parts(None),
     "copy": _copy,
     "clear": lambda e, a, s: _clear(e, a),

@@ -10,6 +10,7 @@ import ast
 import contextlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from pathlib import PurePath
 from typing import Any, Literal, Protocol
 
 from smachac.diagnostics.source import Span
@@ -87,6 +88,8 @@ class Project(Protocol):
     ) -> Value: ...
     def is_of_framework(self, cls: Value) -> bool: ...
     def may_set(self, name: str) -> bool: ...
+    def misplaced(self, module: ModuleValue, name: str) -> tuple[Value, str]: ...
+    def is_certain(self, name: str, user: ModuleValue) -> bool: ...
 
 
 @dataclass(slots=True)
@@ -621,7 +624,7 @@ class Evaluator:
                 return UNKNOWN
         known = name in KNOWN_NAMES or any(word in text.source.text for word in _BINDING)
         if not (known or self.tries):
-            self.faults.append(UseFault("missing member", span, (name, module.file)))
+            self.faults.append(UseFault("missing member", span, (name, module.file, "")))
         return UNKNOWN
 
     def assign(self, target: ast.expr, value: Value, frame: Frame) -> None:
@@ -767,17 +770,25 @@ class Evaluator:
                 if not isinstance(found, ModuleValue) or found.dynamic:
                     frame.module.dynamic = True
                 continue
-            value = UNKNOWN
-            if isinstance(found, ModuleValue) and alias.name in found.slots:
-                value = found.slots[alias.name]
-            elif isinstance(found, ModuleValue | Unknown):
-                inner = self.project.load(self, f"{name}.{alias.name}".strip("."), frame.module)
-                value = inner if not isinstance(inner, Unknown) or not inner.reason else found
-                if isinstance(value, ModuleValue) and value is found:
-                    value = UNKNOWN
-                if isinstance(found, Unknown):
-                    value = found if isinstance(inner, Unknown) else inner
-            self.bind(alias.asname or alias.name, value, frame)
+            self.bind(alias.asname or alias.name, self._imported(found, name, alias, frame), frame)
+
+    def _imported(self, found: Value, module: str, alias: ast.alias, frame: Frame) -> Value:
+        """A name that a module has, or a module in it."""
+        name = alias.name
+        if isinstance(found, ModuleValue) and name in found.slots:
+            return found.slots[name]  # type: ignore[no-any-return]
+        whole = f"{module}.{name}".strip(".")
+        inner = self.project.load(self, whole, frame.module)
+        if inner is not found and not (isinstance(inner, Unknown) and inner.reason == whole):
+            return inner
+        if not isinstance(found, ModuleValue):
+            return found if isinstance(found, Unknown) else UNKNOWN
+        span = self.span(alias, frame)
+        place = Span(span.source, span.start, span.start + len(name)) if span else None
+        sure = not self.unsure and (
+            found.text is None or self.project.is_certain(module, frame.module)
+        )
+        return self._missing(found, name, place, sure=sure)
 
     def _full_name(self, node: ast.ImportFrom, module: ModuleValue) -> str:
         """The module of an import, which can be relative to that of the import."""
@@ -1260,10 +1271,11 @@ class Evaluator:
                 if name in owner.slots:
                     return owner.slots[name]  # type: ignore[no-any-return]
                 found = self.project.load(self, f"{owner.name}.{name}", owner)
-                if isinstance(found, ModuleValue):
+                if isinstance(found, ModuleValue) and found is not owner:
                     return found
-                self._missing(owner, name, node, frame)
-                return UNKNOWN
+                span = self.span(node, frame)
+                place = Span(span.source, span.end - len(name), span.end) if span else None
+                return self._missing(owner, name, place)
             case Instance():
                 return self._of_instance(owner, name, node, frame)
             case Class() | LibraryClass():
@@ -1277,20 +1289,32 @@ class Evaluator:
                 return self._search(order[at + 1 :], name, me)
         return attribute_of_value(self, owner, name)
 
-    def _missing(self, owner: ModuleValue, name: str, node: ast.expr, frame: Frame) -> None:
-        """Notes that a module of the project has no such name."""
-        span = self.span(node, frame)
-        sure = owner.text is not None and owner.is_loaded and not owner.dynamic
-        if span is None or not sure or self.tries or name.startswith("__"):
-            return
+    def _missing(
+        self, owner: ModuleValue, name: str, place: Span | None, *, sure: bool = True
+    ) -> Value:
+        """The value of a name that a module lacks: for a module of a framework, that of the module
+        that has it. It is a fault if no code can bind the name; `sure`: it is always read."""
+        meant, home = self.project.misplaced(owner, name)
+        if place is None or not sure or self.tries or name.startswith("__"):
+            return meant
+        if home or self._lacks(owner, name):
+            names = (name, owner.file or owner.name, home)
+            self.faults.append(UseFault("missing member", place, names))
+        return meant
+
+    def _lacks(self, owner: ModuleValue, name: str) -> bool:
+        """Whether no code can bind a name of a module of the project."""
+        if owner.text is None or not owner.is_loaded or owner.dynamic:
+            return False
+        path = PurePath(owner.file)
+        generated = _GENERATED.intersection((path.stem, path.parent.name))
+        if generated or name in bound_names(owner.text.tree):
+            return False
         inner = self.project.load(self, f"{owner.package}.{name}".strip("."), owner)
         if owner.file.endswith("__init__.py") and not isinstance(inner, Unknown):
-            return  # any import of a module binds its name in its package
-        text = owner.text.source.text if owner.text is not None else ""
-        binds = any(word in text for word in _BINDING)
-        if "__getattr__" not in owner.slots and not binds and not self.project.may_set(name):
-            place = Span(span.source, span.end - len(name), span.end)
-            self.faults.append(UseFault("missing member", place, (name, owner.file)))
+            return False  # any import of a module binds its name in its package
+        binds = any(word in owner.text.source.text for word in _BINDING)
+        return not (binds or "__getattr__" in owner.slots or self.project.may_set(name))
 
     def _of_instance(self, owner: Instance, name: str, node: ast.expr, frame: Frame) -> Value:
         if name in owner.slots:
@@ -1557,6 +1581,9 @@ class Evaluator:
         if isinstance(after, Method):
             self.call(after, Arguments(), None, frame)
 
+
+_GENERATED = frozenset(["msg", "srv", "action", "cfg"])
+"""Packages to which the build of a ROS package adds modules."""
 
 _BINDING = ("globals", "exec(", "setattr", "sys.modules", "vars(", "locals(", "__dict__")
 """The words in a module that can bind names which its assignments do not show."""

@@ -38,7 +38,8 @@ class Framework:
     classes by full name (`smach.StateMachine`), `static` those that need no object, `parameters`
     the parameters of the constructors in their order, where an import needs them. `containers` are
     the classes of containers; `adds` are the methods that add states, and a class that overrides
-    one of `overridden` changes how they are added or run.
+    one of `overridden` changes how they are added or run. `lacking` are modules that have none of
+    the names of another one, each with that one.
 
     `jumps`: an outcome without a transition leads to the state of this name, if there is one.
     `effects` are the codes of the rules whose errors are faults in this framework too, each with
@@ -54,6 +55,7 @@ class Framework:
     static: frozenset[str] = frozenset()
     overridden: frozenset[str]
     parameters: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    lacking: Mapping[str, str] = field(default_factory=dict)
     jumps: bool = False
     effects: Mapping[str, str] | None = None
 

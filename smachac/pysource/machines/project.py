@@ -14,6 +14,7 @@ from smachac.pysource.machines.evaluator import BudgetError, Evaluator
 from smachac.pysource.machines.libraries import (
     library_module,
     method_of,
+    misplaced,
     new_object,
     of_framework,
 )
@@ -102,6 +103,17 @@ class Repository:
             todo += sorted(new)
         return found
 
+    def misplaced(self, module: ModuleValue, name: str) -> tuple[Value, str]:
+        """The value of a name that a module of a framework lacks, and the module that has it."""
+        return misplaced(module.name, name)
+
+    def is_certain(self, name: str, user: ModuleValue) -> bool:
+        """Whether a module can be no other file: it is the only one of its name, or beside the file
+        that imports it."""
+        found = self.file_of(name, user)
+        beside = found is not None and PurePath(found).parent == PurePath(user.file).parent
+        return beside or len(self._files_named(name)) == 1
+
     def faults_of(self, file: str) -> list[UseFault]:
         """The faults in the main parts of the modules that a file imports."""
         modules = (self.loaded.get(other) for other in self.files_of(file) if other != file)
@@ -109,20 +121,22 @@ class Repository:
 
     def file_of(self, name: str, user: ModuleValue) -> str | None:
         """The file of a module."""
+        folders = PurePath(user.file).parent.parts
+        return min(
+            self._files_named(name), default=None,
+            key=lambda file: (-_shared(folders, PurePath(file).parts), len(file), file),
+        )  # fmt: skip
+
+    def _files_named(self, name: str) -> list[str]:
+        """The files that can be a module."""
         parts = name.split(".")
         path = PurePath(*parts)
         endings = (f"{path}.py", str(path / "__init__.py"))
-        found = [
+        return [
             file
             for file in self.by_stem.get(parts[-1], ())
             if any(file == end or file.endswith(os.sep + end) for end in endings)
         ]
-        if not found:
-            return None
-        folders = PurePath(user.file).parent.parts
-        return min(
-            found, key=lambda file: (-_shared(folders, PurePath(file).parts), len(file), file)
-        )
 
     def module(self, evaluator: Evaluator, file: str, *, main: bool = False) -> Value:
         """The module of a file, loaded with the first use."""

@@ -564,6 +564,62 @@ def test_files_of_a_repository_do_not_change_each_other(tmp_path: Path) -> None:
     assert codes == [["SM101"], [], ["SM101"]]
 
 
+CONTAINER = """
+class Part(smach.StateMachine):
+    def __init__(self, where):
+        {made}
+        self.userdata.count = 1
+        with self:
+            smach.StateMachine.add("USE", {state}, {{"ok": "ok"}})
+
+class Set(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=["ok"], output_keys=["part"])
+
+    def execute(self, userdata):
+        userdata.part = 1
+        return "ok"
+
+def main():
+    sm = smach.StateMachine(outcomes=["ok"])
+    {before}
+    with sm:
+        sm.add("PART", Part(vendor.where()), {{"ok": "LAST"}})
+        sm.add("LAST", Use())
+    sm.execute()
+
+main()
+"""
+
+SELECTED = """if where:
+            smach.StateMachine.__init__(self, ["ok"])
+        else:
+            smach.StateMachine.__init__(self, ["ok"], {keys})"""
+
+PRESET = "sm.userdata.part = 1"
+
+
+@pytest.mark.parametrize(
+    ("made", "state", "before", "codes"),
+    [
+        (SELECTED.format(keys="['part']"), "Use()", PRESET, []),
+        (SELECTED.format(keys="vendor.keys()"), "Use()", PRESET, []),
+        ('smach.StateMachine.__init__(self, ["ok"], vendor.keys())', "Use()", PRESET, []),
+        ('smach.StateMachine.__init__(self, ["ok"], vendor.keys())', "Use()", "", ["SM301"]),
+        ('smach.StateMachine.__init__(self, ["ok"], [], vendor.keys())', "Set()", "", []),
+        (SELECTED.format(keys="[], ['part']"), "Set()", "", []),
+    ],
+)
+def test_the_keys_of_a_container_are_not_known(
+    made: str, state: str, before: str, codes: list[str], tmp_path: Path
+) -> None:
+    code = CONTAINER.format(made=made, state=state, before=before or "pass")
+    assert sorted({item[:5] for item in found(code, tmp_path)}) == codes
+    coverage = PythonProject(Disk()).read(tmp_path / "machine.py").coverage
+    assert coverage is not None
+    assert coverage.unknown == ()
+
+
 def test_a_fault_of_a_module_belongs_to_each_file_that_imports_it(tmp_path: Path) -> None:
     (tmp_path / "names.py").write_text("import other\nFIRST = other.MISSING\n", "utf-8")
     (tmp_path / "other.py").write_text("import smach\n", "utf-8")
