@@ -44,6 +44,7 @@ from smachac.pysource.machines.values import (
     ModuleValue,
     Native,
     OneOf,
+    OpenText,
     OwnSlots,
     Partial,
     Slots,
@@ -56,6 +57,7 @@ from smachac.pysource.machines.values import (
     newest,
     one_of,
     sequence,
+    text_of,
     truth,
 )
 from smachac.pysource.syntax_tree import walk_code
@@ -1108,6 +1110,9 @@ class Evaluator:
             return self._spent(filled_in(left.value, right, span))
         if isinstance(left, Const) and isinstance(right, Const):
             return self._spent(calculated(left, op, right, span))
+        texts = text_of(left), text_of(right)
+        if isinstance(op, ast.Add) and None not in texts and Const in (type(left), type(right)):
+            return formatted((left, right), span)
         own, other = sequence(left), sequence(right)
         lists = isinstance(left, ListValue | TupleValue) and isinstance(
             right, ListValue | TupleValue
@@ -1265,6 +1270,8 @@ class Evaluator:
             case OneOf(values=values):
                 objects = (part for part in values if part != NONE)
                 return one_of(self.attribute(part, name, node, frame) for part in objects)
+            case OpenText():
+                return attribute_of_value(self, owner, name)
             case Unknown():
                 return owner
             case ModuleValue():

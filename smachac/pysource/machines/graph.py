@@ -55,12 +55,14 @@ from smachac.pysource.machines.values import (
     LibraryClass,
     Method,
     OneOf,
+    OpenText,
     TupleValue,
     Unknown,
     Value,
     alternatives,
     one_of,
     sequence,
+    text_of,
     truth,
 )
 
@@ -115,9 +117,7 @@ def graphs(roots: Roots, evaluator: Evaluator, reader: FactReader) -> Iterator[G
 
 
 def _text(value: Value | None) -> str | None:
-    if isinstance(value, Const) and isinstance(value.value, str):
-        return value.value
-    return None
+    return text_of(value) if value is not None else None
 
 
 class _Builder:
@@ -535,16 +535,20 @@ class _Children:
         self.jumps = builder.framework(made).jumps
         self.incomplete = not complete
         self.labels: set[str] = set()
+        self.open_labels: list[OpenText] = []
         self.outside: dict[str, Span] = {}
         self.choices: list[Leaf] = []
 
     def build(self, added: Sequence[Added], depth: int) -> tuple[Node, ...]:
         known = [one for one in added if _text(one.label) is not None]
         self.labels = {text for one in known if (text := _text(one.label)) is not None}
+        self.open_labels = [one.label for one in known if isinstance(one.label, OpenText)]
         known = _one_for_each_name(known)
         for one in (*(one for one in added if _text(one.label) is None), *known):
             if _text(one.label) is None:
                 self.builder.unknown.append((one.span, "its name is not known"))
+            elif isinstance(one.label, OpenText):
+                self.builder.unknown.append((one.span, "a part of its name is not known"))
             elif one.possible:
                 self.builder.unknown.append((one.span, "a condition that is not known adds it"))
         if any(_text(one.label) is None for one in added) or (added and added[0].possible):
@@ -637,7 +641,7 @@ class _Children:
         """The target of a transition: its name, that of a state for several, or ELSEWHERE."""
         parts = alternatives(value)
         names = [_text(part) for part in parts]
-        if None in names:
+        if None in names or not all(self._is_sure(part) for part in parts):
             self.incomplete = True
             self.builder.unknown.append((added.span, f"the target of `{outcome}` is not known"))
             return ELSEWHERE
@@ -660,6 +664,17 @@ class _Children:
             )
         )  # fmt: skip
         return label
+
+    def _is_sure(self, target: Value) -> bool:
+        """Whether a target can be no other state or outcome than that of its name: of a text with
+        an open part, and of states with such names, another one can be meant."""
+        if _text(target) in self.labels:
+            return True
+        if isinstance(target, OpenText):
+            return False
+        name = _text(target) or ""
+        known = name in {outcome for outcome, _ in self.outcomes or ()}
+        return not name or known or not any(label.can_be(name) for label in self.open_labels)
 
     def _remaps(self, added: Added) -> Iterator[Remap]:
         given = added.remapping

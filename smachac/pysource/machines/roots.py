@@ -20,6 +20,7 @@ from smachac.pysource.machines.values import (
     Function,
     Instance,
     ModuleValue,
+    OpenText,
     Value,
     alternatives,
 )
@@ -192,7 +193,7 @@ def _of_class(
             del evaluator.made[before:]
         for method in methods:
             if variants or method.node not in evaluator.called:
-                given = _unknown(method, variants=variants)
+                given = _unknown(method, variants=variants, once=False)
                 evaluator.run(method, given.without_first().with_first(made))
 
     yield build
@@ -202,13 +203,18 @@ def _place(module: ModuleValue, cls: Class) -> Span | None:
     return module.text.span(cls.node) if module.text is not None else None
 
 
-def _unknown(function: Function, *, variants: bool) -> Arguments:
-    """Unknown arguments for the parameters that have no default value; for `variants` for all."""
+def _unknown(function: Function, *, variants: bool, once: bool = True) -> Arguments:
+    """Unknown arguments for the parameters that have no default value; for `variants` for all. If
+    it is called `once` for an object, each of them is one text in all names."""
     taken = function.node.args
     positional = [*taken.posonlyargs, *taken.args]
-    names = [(argument.arg, UNKNOWN) for argument in taken.kwonlyargs] if variants else []
     known = 0 if variants else len(function.defaults)
-    return Arguments((UNKNOWN,) * (len(positional) - known), tuple(names))
+    given = (
+        OpenText(text=f"{{{argument.arg}}}") if once else UNKNOWN
+        for argument in positional[: len(positional) - known]
+    )
+    named = [(argument.arg, UNKNOWN) for argument in taken.kwonlyargs] if variants else []
+    return Arguments(tuple(given), tuple(named))
 
 
 def _builds(node: ast.AST, module: ModuleValue) -> bool:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import itertools
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol, TypeAlias
 
@@ -62,6 +63,19 @@ class Unknown:
 
 
 UNKNOWN = Unknown()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OpenText(Unknown):
+    """A text with a part that is not known, but the same wherever it is used: that of a parameter.
+    `text` has the name of the parameter in braces: `GO_TO_{place}`."""
+
+    text: str
+
+    def can_be(self, text: str) -> bool:
+        """Whether this can be a known text."""
+        pattern = re.sub(r"\\\{.*?\\\}", ".*", re.escape(self.text))
+        return re.fullmatch(pattern, text, re.DOTALL) is not None
 
 
 @dataclass(frozen=True, slots=True)
@@ -357,12 +371,20 @@ def one_of(values: Iterable[Value]) -> Value:
     for value in values:
         for part in value.values if isinstance(value, OneOf) else (value,):
             if isinstance(part, Unknown):
-                return part
+                return UNKNOWN if isinstance(part, OpenText) else part
             if all(part is not known and part != known for known in found):
                 found.append(part)
     if len(found) == 1:
         return found[0]
     return OneOf(tuple(found)) if 0 < len(found) <= MOST_ALTERNATIVES else UNKNOWN
+
+
+def text_of(value: Value) -> str | None:
+    """A text, with the names of the parameters in it if it is not known as a whole."""
+    match value:
+        case Const(value=str() as text) | OpenText(text=text):
+            return text
+    return None
 
 
 def alternatives(value: Value) -> tuple[Value, ...]:
