@@ -698,6 +698,7 @@ def test_a_name_that_an_imported_module_lacks_is_a_fault(name: str) -> None:
         "from robot.msg import Pose\nfrom robot.cfg import TourConfig",  # the build makes them
         "from tools import AFTR",  # two files have this name
         "from whole import AFTR",
+        "from twice import AFTER",  # a package with a module of its name
         "from inner import broken",
         "from smach import InvalidUserCodeError",
     ],
@@ -707,6 +708,7 @@ def test_a_name_that_a_module_can_have_is_no_fault(code: str) -> None:
         "names.py": "AFTER = 1", "robot/msg/__init__.py": "", "robot/cfg/__init__.py": "",
         "a/tools.py": "", "b/tools.py": "", "whole.py": "from vendor import *",
         "inner/__init__.py": "", "inner/broken.py": "def",
+        "twice/__init__.py": "from twice import *", "twice/twice.py": "AFTER = 1",
     }  # fmt: skip
     assert evaluated(code, files)[1] == []
 
