@@ -112,7 +112,7 @@ class Repository:
         that imports it."""
         found = self.file_of(name, user)
         beside = found is not None and PurePath(found).parent == PurePath(user.file).parent
-        return beside or len(self._files_named(name, user)) == 1
+        return beside or len(self._files_named(name)) == 1
 
     def faults_of(self, file: str) -> list[UseFault]:
         """The faults in the main parts of the modules that a file imports."""
@@ -120,24 +120,24 @@ class Repository:
         return [fault for part in modules if isinstance(part, ModuleValue) for fault in part.faults]
 
     def file_of(self, name: str, user: ModuleValue) -> str | None:
-        """The file of a module."""
+        """The file of a module. In Python 2, a package can import a module in it of its own name
+        without a dot; only the main script imports itself."""
         folders = PurePath(user.file).parent.parts
-        return min(
-            self._files_named(name, user), default=None,
-            key=lambda file: (-_shared(folders, PurePath(file).parts), len(file), file),
-        )  # fmt: skip
 
-    def _files_named(self, name: str, user: ModuleValue) -> list[str]:
-        """The files that can be a module that another one imports: no module imports itself, but
-        a package can import a module of its own name, in Python 2 without a dot."""
+        def order(file: str) -> tuple[bool, int, int, str]:
+            return file == user.file, -_shared(folders, PurePath(file).parts), len(file), file
+
+        return min(self._files_named(name), key=order, default=None)
+
+    def _files_named(self, name: str) -> list[str]:
+        """The files that can be a module."""
         parts = name.split(".")
         path = PurePath(*parts)
         endings = (f"{path}.py", str(path / "__init__.py"))
         return [
             file
             for file in self.by_stem.get(parts[-1], ())
-            if file != user.file
-            and any(file == end or file.endswith(os.sep + end) for end in endings)
+            if any(file == end or file.endswith(os.sep + end) for end in endings)
         ]
 
     def module(self, evaluator: Evaluator, file: str, *, main: bool = False) -> Value:

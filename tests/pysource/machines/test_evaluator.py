@@ -326,6 +326,21 @@ start(Tour)
     assert read(code, starting="def start(kind):\n    kind(None).execute()\n").exact == CHAIN
 
 
+def test_a_main_script_that_imports_itself() -> None:
+    code = """
+class Tour(smach.StateMachine):
+    def __init__(self):
+        smach.StateMachine.__init__(self, outcomes=["done"])
+        with self:
+            self.add("A", Do(), {"ok": "B"})
+            self.add("B", Do(), {"ok": "done"})
+if __name__ == "__main__":
+    from machine import Tour
+    Tour().execute()
+"""
+    assert read(code).exact == CHAIN
+
+
 def test_a_method_of_a_made_object_gives_no_machine_of_its_constructor_again() -> None:
     code = """
 class Tours:
