@@ -104,10 +104,6 @@ class PythonProject:
         library = disk_library(path, report, disk=self.disk, codes=CODES)
         if source is None:
             return PythonFile(path=path, source=None, report=report)
-        if self._tree(source) is None:
-            report.append(_unreadable(source))
-            found = grouped(apply_severities(in_order(report), library.policy))
-            return PythonFile(path=path, source=source, report=found)
         cache = self._cache(path) if self.cached else None
         key = f"{path} {everything} {library.policy}"
         known = cache.get(key, self._text) if cache is not None else None
@@ -115,6 +111,10 @@ class PythonProject:
             return PythonFile(
                 path=path, source=source, report=[*report, *known.report], coverage=known.coverage
             )
+        if self._tree(source) is None:
+            report.append(_unreadable(source))
+            found = grouped(apply_severities(in_order(report), library.policy))
+            return PythonFile(path=path, source=source, report=found)
         read_before = [*report]
         whole_rules = everything or MARK in source.text  # a comment can be about any finding
         rules = RULES if whole_rules else _DEFAULT_RULES
@@ -259,11 +259,9 @@ def python_files(folder: Path) -> Iterator[Path]:
         visited += 1 + len(names)
         if visited > MOST_ENTRIES or count >= MOST_FILES:
             return
-        for name in sorted(names):
+        for name in sorted(name for name in names if name.endswith(PYTHON_SUFFIX)):
             path = Path(top, name)
-            if name.endswith(PYTHON_SUFFIX) and not (
-                path.is_symlink() and not lies_inside(path, folder)
-            ):
+            if not path.is_symlink() or lies_inside(path, folder):
                 count += 1
                 yield path
 

@@ -57,9 +57,7 @@ class Repository:
         self.parse = parse or module_text
         self.by_stem: dict[str, list[str]] = {}
         for file in files:
-            path = PurePath(file)
-            stem = path.parent.name if path.name == "__init__.py" else path.stem
-            self.by_stem.setdefault(stem, []).append(file)
+            self.by_stem.setdefault(_stem(file), []).append(file)
         self.loaded: dict[str, ModuleValue | Unknown] = {}
         self.libraries: dict[str, ModuleValue] = {}
         self.imported: dict[str, dict[str, None]] = {}
@@ -76,9 +74,7 @@ class Repository:
 
     def has(self, file: str) -> bool:
         """Whether a file is one of the repository."""
-        path = PurePath(file)
-        stem = path.parent.name if path.name == "__init__.py" else path.stem
-        return file in self.by_stem.get(stem, ())
+        return file in self.by_stem.get(_stem(file), ())
 
     def load(self, evaluator: Evaluator, name: str, user: ModuleValue) -> Value:
         """A module by its dotted name; unknown, with its name, if the repository has none."""
@@ -122,21 +118,23 @@ class Repository:
     def file_of(self, name: str, user: ModuleValue) -> str | None:
         """The file of a module. In Python 2, a package can import a module in it of its own name
         without a dot; only the main script imports itself."""
+        found = self._files_named(name)
+        if not found:
+            return None
         folders = PurePath(user.file).parent.parts
 
         def order(file: str) -> tuple[bool, int, int, str]:
             return file == user.file, -_shared(folders, PurePath(file).parts), len(file), file
 
-        return min(self._files_named(name), key=order, default=None)
+        return min(found, key=order)
 
     def _files_named(self, name: str) -> list[str]:
         """The files that can be a module."""
-        parts = name.split(".")
-        path = PurePath(*parts)
-        endings = (f"{path}.py", str(path / "__init__.py"))
+        path = name.replace(".", os.sep)
+        endings = (f"{path}.py", os.path.join(path, "__init__.py"))  # noqa: PTH118 (fast)
         return [
             file
-            for file in self.by_stem.get(parts[-1], ())
+            for file in self.by_stem.get(name.rpartition(".")[2], ())
             if any(file == end or file.endswith(os.sep + end) for end in endings)
         ]
 
@@ -193,6 +191,12 @@ class Repository:
         sets = _setting(name)
         texts = (module.text for module in self.loaded.values() if isinstance(module, ModuleValue))
         return any(text is not None and sets.search(text.source.text) for text in texts)
+
+
+def _stem(file: str) -> str:
+    """The last name of a module, or of a package."""
+    folder, name = os.path.split(file)
+    return os.path.basename(folder) if name == "__init__.py" else name.removesuffix(".py")  # noqa: PTH119 (fast)
 
 
 def _setting(name: str) -> re.Pattern[str]:
