@@ -552,7 +552,9 @@ def _moved_out(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
         rest = text[end:last]
         whole = Span(source, start, last)
         if columns > 0 and first < start:
-            operator = f"move them {columns} columns to the left"
+            name, position = inner.key.span.text, source.position
+            after = f"behind line {position(last - 1)[0]}" if rest else "there"
+            operator = f"move `{name}` {after}, {columns} columns to the left"
             yield candidate(1.3, operator, Edit(span=whole, text=rest + moved))
 
 

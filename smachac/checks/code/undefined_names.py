@@ -293,7 +293,7 @@ def _uses(node: Node, code: Expression) -> Iterator[_Use]:
     tree = script_code(code.text).tree  # SM016 if there is none
     function = tree if isinstance(tree, ast.Lambda) else None
     packages = _packages(tree)
-    keys = {key.name for key in node.inputs}
+    keys = {key.name for key in (*node.inputs, *node.outputs)}
     found: set[str] = set()
     for name in script_code(code.text).free_names:
         word = name.id
@@ -344,7 +344,7 @@ def _fix(use: _Use, imported: list[str]) -> NameFix | None:
         return _param_fix(use)
     if word in CONSTANTS:
         return NameFix(f"write `{CONSTANTS[word]}`", edits=_edits(use, CONSTANTS[word]))
-    keys = [key.name for key in use.node.inputs]
+    keys = [key.name for key in (*use.node.inputs, *use.node.outputs)]
     if own and word in keys:
         meant = f"{own[0]}.{word}"
         return NameFix(f"did you mean `{meant}`?", edits=_edits(use, meant))

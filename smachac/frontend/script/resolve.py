@@ -72,6 +72,7 @@ from smachac.frontend.script.sub_scripts import (
 )
 from smachac.frontend.script.unknown_templates import (
     Searched,
+    meant_container,
     missing_template,
     missing_template_help,
     unknown_template,
@@ -730,9 +731,10 @@ class _Resolver:
             called = [] if role or is_known else self.library.script_names(around.source.name)
             found_in = Searched(searched, names, known, called, other)
             self.not_found(word.text, unknown_template(word, read, found_in, self.other_type))
-            meant = schema.CONTAINERS.get(near or "")
-            if meant is not None:
-                return schema.CONTAINER_TYPES[meant], meant
+            meant = near if near in schema.CONTAINERS else meant_container(word.text, entries)
+            if meant in schema.CONTAINERS:
+                kind = schema.CONTAINERS[meant]
+                return schema.CONTAINER_TYPES[kind], kind
             return StateType(name=word.text, open=True), role or nested
         # Some meta blocks of SMACHA name the kind `container` for a state.
         is_container = found.kind == "container" and not found.prints_itself

@@ -170,13 +170,15 @@ def read_fields(
     for part, key in table.listed:
         read[part] = (*read.get(part, ()), *listed_keys(entries[key].value))
     missing = [key for key in table.missing if key not in rejected]
+    unquoted = [(key, variable) for key, variable in table.unquoted
+                if not _is_name_for_type(key, variable, entries, missing, report)]  # fmt: skip
     if missing:
         _report_missing(missing, entries, owner, type_, read, inner, report)
     if table.variables:
         read["variables"] = tuple(_variables(table, entries, type_))
     if owner == "base" and "function_name" in entries:
         check_unquoted(entries["function_name"].value, "name", report)
-    for key, variable in table.unquoted:
+    for key, variable in unquoted:
         _check_unquoted(entries[key].value, variable, report)
     if type_.prints_itself:
         read["written"] = tuple(_written(read["name"], entries, scope))
@@ -213,8 +215,8 @@ def with_recovered_fields(
 ) -> dict[str, Entry]:
     """The fields, with those of unknown names also under the names that are meant, where that is
     certain: then one misspelt name is one finding. The role of a variable means the variable, as
-    `conditions` in a ConditionalOutcomeState. Fields whose name and value have changed places are
-    reported."""
+    `conditions` in a ConditionalOutcomeState, and so does its name in another framework. Fields
+    whose name and value have changed places are reported."""
     own = schema.OWN_FIELDS[owner]
     if own.issuperset(entries):
         return entries
@@ -233,6 +235,8 @@ def with_recovered_fields(
         variable.role: name for name, variable in type_.variables.items() if variable.role
     }
     meant |= {roles[key]: entries[key] for key in unknown if key in roles}
+    for words in type_.other_names.values():
+        meant |= {words[key]: entries[key] for key in unknown if key in words}
     other = next((entries[key] for key in unknown if key in TEMPLATE_WORDS), None)
     if other is not None and owner != "base":
         meant["template"] = other
@@ -479,6 +483,23 @@ def _with_type(name: str, variable: VariableType | None) -> str | None:
         return None
     what, example = TYPE_EXAMPLES[variable.role]
     return f"add `{name}` with the type of {what}, such as `{name}: {example}`"
+
+
+def _is_name_for_type(
+    key: str, variable: VariableType, entries: Entries, missing: list[str], report: Report
+) -> bool:
+    """Whether a variable for a type of ROS has the name of a service or action in its place, for
+    which the one missing variable is: this is reported, and that variable is not missing then."""
+    text = name_of(entries[key].value)
+    if variable.role not in TYPE_EXAMPLES or text is None or not text.text.startswith("/"):
+        return False
+    if len(missing) != 1:
+        return False
+    what, example = TYPE_EXAMPLES[variable.role]
+    message = f"`{text.text}` is a name, but `{key}` is the type of {what}"
+    help = f"write `{missing.pop()}: {text.text}`, and `{key}: {example}` with the type that it has"
+    report.append(wrong_shape(text.span, message, help, arguments=(key, text.text)))
+    return True
 
 
 def _example(variable: VariableType) -> str:
