@@ -160,10 +160,10 @@ def clusters(
     for item in sorted(serious, key=_is_no_error)[:MOST_CLUSTERS]:
         if trials <= 0:
             break
-        others = [other for other in serious if other is not item]
-        named = (other.finding.arguments for other in others)
+        rest = [other for other in serious if other is not item]
+        named = (other.finding.arguments for other in rest)
         around = Around(read, [*chain.from_iterable(named)], types, interface, vocabulary)
-        wrong = {other.span.text for other in others if _has_same_fault(other, item)}
+        wrong = {other.span.text for other in rest if _has_same_fault(other, item)}
         proposed = [made for made in _proposals(item, around) if not _writes_one_of(made, wrong)]
         proof = _proof(item, analysis, analysed, proposed[:trials])
         trials -= len(proposed)

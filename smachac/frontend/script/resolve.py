@@ -731,9 +731,8 @@ class _Resolver:
             called = [] if role or is_known else self.library.script_names(around.source.name)
             found_in = Searched(searched, names, known, called, other)
             self.not_found(word.text, unknown_template(word, read, found_in, self.other_type))
-            meant = near if near in schema.CONTAINERS else meant_container(word.text, entries)
-            if meant in schema.CONTAINERS:
-                kind = schema.CONTAINERS[meant]
+            kind = schema.CONTAINERS.get(near or meant_container(word.text, entries))
+            if kind is not None:
                 return schema.CONTAINER_TYPES[kind], kind
             return StateType(name=word.text, open=True), role or nested
         # Some meta blocks of SMACHA name the kind `container` for a state.
