@@ -192,7 +192,8 @@ def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
     found = [*_near_names(item, text, around.vocabulary)]
     same = _same_keys(item.span, text.tree)
     if same != 1 or item.span.text not in KNOWN_FIELDS:
-        found += _mentioned_names(item, around.others)
+        # The names in code are not those of the script around it.
+        found += _mentioned_names(item, () if item.code == "SM019" else around.others)
     if same > 1:  # which of them is wrong is not known
         found = [_only_possible(made) for made in found]
     found += _unused_names(item, text)
@@ -354,7 +355,7 @@ def _mentioned_names(item: Diagnostic, others: Sequence[str]) -> Iterator[Candid
     own = (*item.finding.arguments[:MOST_WORDS], *near)
     for cost, names in ((1.6, own), (1.7, others)):
         for name in dict.fromkeys(names):
-            if name != word and NAME.fullmatch(name):
+            if name != word and NAME.fullmatch(name) and not _are_of_two_kinds(word, name):
                 yield candidate(cost, RENAME, Edit(span=item.span, text=name))
 
 

@@ -737,6 +737,32 @@ FIRST = {
 """,
         [("SM316", "n + 1", "write `'lambda ud: ud.n + 1'`")],
     ),
+    "names of states as fields": (
+        """\
+- name: A
+  template: SleepState
+  time: 1
+  transitions: {succeeded: B, preempted: failed}
+- name: B
+  template: SleepState
+  time: 1
+  transitions: {succeeded: done}
+""",
+        [
+            ("SM004", "name", "write `- A:` in place of `- name: A`"),
+            ("SM004", "name", "write `- B:` in place of `- name: B`"),
+        ],
+    ),
+    "a param in code": (
+        """\
+- A:
+    template: SleepState
+    params: {pause: 1}
+    time: params.pause
+    transitions: {succeeded: done, preempted: failed}
+""",
+        [("SM019", "params", "a param is looked up outside of code: write `[params, pause]`")],
+    ),
     "a loop without an end": (
         "- A: {template: ScriptedState, outcomes: [ok], transitions: {ok: A}}\n",
         [("SM202", "A", "lead an outcome of `A` to an outcome of `sm`")],

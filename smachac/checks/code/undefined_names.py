@@ -411,9 +411,11 @@ def _param_fix(use: _Use) -> NameFix:
         before, found, after = use.code.text.partition(ast.unparse(node))
         if found:
             parts = [f"'{part}'" for part in (before, after) if part]
-            parts.insert(1 if before else 0, f"[params, {param}]")
+            look_up = f"[params, {param}]"
+            parts.insert(1 if before else 0, look_up)
+            written = f"[{', '.join(parts)}]" if len(parts) > 1 else look_up
             return NameFix(
-                f"a param is looked up outside of code: write `[{', '.join(parts)}]`",
+                f"a param is looked up outside of code: write `{written}`",
                 f"`params.{param}` is used in code, which has no name `params`",
             )
     return NameFix("a param is looked up outside of code: `[params, NAME]`")

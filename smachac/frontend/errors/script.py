@@ -134,10 +134,13 @@ def duplicate_key(key: Word, first: Span) -> Finding:
 FOREIGN = {
     "autonomy": "remove it: smachac has no levels of autonomy",
     "child_termination_cb": "write `join: any` if the first branch that ends must stop the others",
+    "base": "name the base with `template:`",
     "children": "write `states:`",
     "class": "name the state type with `template:`",
     "initial_state": "write `initial:`",
     "io_keys": "list the keys in `input_keys` and in `output_keys`",
+    "item": "write `it_label:` at an Iterator for the name of one item",
+    "items": "write `it:` at an Iterator for the items, and `it_label:` for the name of one",
     "max_retries": "write `retry: {on: [OUTCOME], max: NUMBER}`",
     "next": "write `transitions: {OUTCOME: STATE}`",
     "outcome_cb": "write rules in `outcome_map`",

@@ -10,7 +10,8 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, did_you_mean
-from smachac.diagnostics.source import Word
+from smachac.diagnostics.repair import Edit
+from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import (
     MOST_EXPLAINED,
     guesser_of,
@@ -617,6 +618,19 @@ def _owner_of(owner: FieldOwner, type_: StateType, *, of_type: bool) -> Owner:
     if owner == "base":
         return Owner(owner, "the script")
     return Owner(owner, "a state" if owner == "state" else f"a container of type `{owner}`")
+
+
+NAME_WORDS = frozenset(["name", "state", "id"])
+"""The keys under which other tools write the name of a state."""
+
+
+def name_as_field(entry: Entry, name: Word) -> Diagnostic:
+    """SM004 for a state whose name is written as a field."""
+    key, span = str(entry.key.value), entry.key.span
+    message = f"`{key}` is no field of a state: the name of a state is the key of its item"
+    edit = Edit(span=Span(span.source, span.start, name.span.end), text=f"{name.span.text}:")
+    help = f"write `- {name.text}:` in place of `- {key}: {name.text}`"
+    return wrong_shape(span, message, help, arguments=(key, name.text), edits=(edit,))
 
 
 def is_field(entry: Entry) -> bool:
