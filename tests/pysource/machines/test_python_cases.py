@@ -88,7 +88,7 @@ def test_python_2_without_the_extra_names_the_command_that_installs_it() -> None
     assert done.stderr == ""
 
 
-TABS = "import smach\nsm = smach.StateMachine(outcomes=['a'])\nif sm:\n        sm.open()\n\tsm.close()\n"
+TABS = "import smach\nsm = smach.StateMachine(['a'])\nif sm:\n        sm.open()\n\tsm.close()\n"
 
 
 @pytest.mark.parametrize(
