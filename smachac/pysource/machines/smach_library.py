@@ -44,7 +44,7 @@ from smachac.pysource.machines.values import (
     alternatives,
     sequence,
 )
-from smachac.pysource.machines.wrong_calls import Signature
+from smachac.pysource.machines.wrong_calls import Signature, signature
 
 _READY = {
     "smach_ros.SimpleActionState": ("succeeded", "aborted", "preempted"),
@@ -462,29 +462,24 @@ _ROS_MODULE: Mapping[str, Value] = {
 }
 
 
-def _signature(required: str, optional: str = "") -> Signature:
-    every = [*required.split(), *optional.split()]
-    return Signature(positional=every, named=every, required=required.split())
-
-
 _KEYS = "input_keys output_keys"
 
 _SIGNATURES: Mapping[str, Signature] = {
-    "smach.StateMachine.__init__": _signature("self outcomes", _KEYS),
-    "smach.Sequence.__init__": _signature("self outcomes connector_outcome", _KEYS),
-    "smach.Concurrence.__init__": _signature(
+    "smach.StateMachine.__init__": signature("self outcomes", _KEYS),
+    "smach.Sequence.__init__": signature("self outcomes connector_outcome", _KEYS),
+    "smach.Concurrence.__init__": signature(
         "self outcomes default_outcome", f"{_KEYS} outcome_map outcome_cb child_termination_cb"
     ),
-    "smach.Iterator.__init__": _signature(
+    "smach.Iterator.__init__": signature(
         "self outcomes input_keys output_keys", "it it_label exhausted_outcome"
     ),
-    "smach.StateMachine.add": _signature("label state", "transitions remapping"),
-    "smach.StateMachine.add_auto": _signature(
+    "smach.StateMachine.add": signature("label state", "transitions remapping"),
+    "smach.StateMachine.add_auto": signature(
         "label state connector_outcomes", "transitions remapping"
     ),
-    "smach.Sequence.add": _signature("label state", "transitions remapping"),
-    "smach.Concurrence.add": _signature("label state", "remapping"),
-    "smach.Iterator.set_contained_state": _signature(
+    "smach.Sequence.add": signature("label state", "transitions remapping"),
+    "smach.Concurrence.add": signature("label state", "remapping"),
+    "smach.Iterator.set_contained_state": signature(
         "label state", "loop_outcomes break_outcomes final_outcome_map"
     ),
 }  # fmt: skip

@@ -21,6 +21,12 @@ class Signature(NamedTuple):
     others: bool = False
 
 
+def signature(required: str, optional: str = "") -> Signature:
+    """The parameters of a method, of which each takes an argument by its place or its name."""
+    every = [*required.split(), *optional.split()]
+    return Signature(positional=every, named=every, required=required.split())
+
+
 def signature_of(function: Function) -> Signature:
     """The parameters of a function of the project."""
     taken = function.node.args
