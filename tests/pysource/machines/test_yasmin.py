@@ -230,7 +230,7 @@ KINDS = {
     "SM102": UNKNOWN_OUTCOME, "SM104": UNMAPPED, "SM806": OUTCOME_NAME, "SM106": TWICE,
     "SM807": START, "SM202": NO_WAY_OUT, "SM808": CALL,
 }  # fmt: skip
-"""Kinds of faults, by code; `# !` marks the line of each. The first ten are those of docs/existing.md."""
+"""Kinds of faults by code, the first ten as in docs/existing.md; `# !` marks the line of each."""
 CASES = [(kind, name) for kind, cases in KINDS.items() for name in cases]
 
 
