@@ -17,6 +17,7 @@ from smachac.pysource.machines.libraries import (
     misplaced,
     new_object,
     of_framework,
+    signature_of_method,
 )
 from smachac.pysource.machines.values import (
     Arguments,
@@ -29,6 +30,7 @@ from smachac.pysource.machines.values import (
     UseFault,
     Value,
 )
+from smachac.pysource.machines.wrong_calls import Signature
 from smachac.pysource.python2 import NotInstalledError, python2_text
 from smachac.pysource.source import PythonText, python_text
 
@@ -65,6 +67,9 @@ class Repository:
 
     def method_of(self, cls: str, name: str) -> Native | None:
         return method_of(cls, name)
+
+    def signature_of(self, method: Native) -> Signature | None:
+        return signature_of_method(method)
 
     def is_of_framework(self, cls: Value) -> bool:
         return of_framework(cls) is not None

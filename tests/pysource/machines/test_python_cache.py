@@ -8,9 +8,11 @@ import pytest
 
 from smachac.commands.cli import main
 from smachac.diagnostics.source import Source
-from smachac.driver import batch
-from smachac.driver.python_cache import cache_folder
+from smachac.driver import batch, python_cache
+from smachac.driver.python_cache import cache_folder, own_files
 from smachac.driver.python_machines import PythonProject
+from smachac.frontend.files import PACKAGE
+from smachac.pysource.machines import evaluator
 
 MACHINE = """\
 import smach
@@ -157,3 +159,21 @@ def test_a_python_file_is_never_read_as_a_script(
     monkeypatch.setattr(batch._Checker, "script", noted)
     assert '"SM101"' in check(capsys)
     assert scripts == []
+
+
+def test_a_change_of_smachac_counts(
+    folder: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    read: list[Path],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert evaluator.__file__ in own_files(PACKAGE)
+    package = tmp_path / "smachac"
+    (package / "pysource").mkdir(parents=True)
+    (package / "pysource" / "evaluator.py").write_text("STEPS = 1\n")
+    monkeypatch.setattr(python_cache, "PACKAGE", package)
+    check(capsys)
+    (package / "pysource" / "evaluator.py").write_text("STEPS = 100\n")
+    check(capsys)
+    assert len(read) == 2
