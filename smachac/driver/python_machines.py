@@ -36,7 +36,13 @@ from smachac.pysource.machines.project import Repository, module_text
 from smachac.pysource.machines.roots import Roots, machines_of, variants_of
 from smachac.pysource.machines.values import UseFault
 from smachac.pysource.python2 import INSTALL, is_installed, looks_like_python2
-from smachac.pysource.source import LONGEST, PythonText, is_readable, syntax_error
+from smachac.pysource.source import (
+    LONGEST,
+    PythonText,
+    is_readable,
+    is_too_deep,
+    syntax_error,
+)
 from smachac.records import dataclass
 
 CANNOT_WORK = frozenset({
@@ -290,10 +296,11 @@ def _unreadable(source: Source) -> Diagnostic:
     if looks_like_python2(source) and not is_installed():
         span = Span(source, 0, 0)
         return errors.unreadable_module(span, "this is code for Python 2", INSTALL)
-    word = syntax_error(source)
+    word = None if is_too_deep(source.text) else syntax_error(source)
     if word is None:
         span = Span(source, 0, 0)
-        message, help = "the code in this file is nested too deeply", "split the expressions"
+        message = "the code in this file is nested more deeply than smachac reads"
+        help = "assign parts of its longest expression to variables"
         if len(source.text) > LONGEST:
             message, help = f"this file has more than {LONGEST:,} characters", "split the file"
         elif not is_readable(source.text):

@@ -36,6 +36,7 @@ from smachac.pysource.machines.values import (
     Value,
     alternatives,
     one_of,
+    open_text,
     sequence,
     truth,
 )
@@ -387,7 +388,7 @@ _CHANGES = frozenset(["upper", "lower", "title", "capitalize", "strip", "swapcas
 def _changed_text(text: str, name: str, arguments: Arguments) -> Value:
     """What a method makes of a parameter."""
     plain = arguments == Arguments() and "{" not in text[1:]
-    return OpenText(text=f"{text[:-1]}.{name}()}}") if plain else UNKNOWN
+    return open_text(f"{text[:-1]}.{name}()}}") if plain else UNKNOWN
 
 
 def _text_method(name: str) -> Callable[[Interpreter, Arguments, Span | None], Value]:
@@ -408,7 +409,7 @@ def _text_method(name: str) -> Callable[[Interpreter, Arguments, Span | None], V
         if isinstance(found, str) and len(found) > LONGEST_TEXT:
             return UNKNOWN
         if opened:
-            return OpenText(text=found) if name in ("format", "join") else UNKNOWN
+            return open_text(found) if name in ("format", "join") else UNKNOWN
         return _as_value(found, span or me.span)
 
     return run

@@ -69,6 +69,8 @@ MOST_STEPS, MOST_TIMES = 150_000, 2
 its functions and classes, and how many times as many for all of them."""
 DEEPEST_CALL, MOST_RECURSIVE = 60, 2
 """The most calls inside one another, and of one function under an unknown condition."""
+MOST_BASES = 200
+"""The most classes from which a class is derived that are known."""
 MOST_TURNS, MOST_WIDENINGS = 1_000, 8
 """The most turns of a `while` loop, and the most times that a loop with an unknown number of turns
 is evaluated until a turn changes nothing more."""
@@ -872,11 +874,13 @@ class Evaluator:
         kinds = Class | LibraryClass | Unknown
         known = [base if isinstance(base, kinds) else UNKNOWN for base in bases]
         rows = [[base, *self.classes(base)[1:]] for base in known] + [[*known]]
+        if sum(map(len, rows)) > MOST_BASES:
+            return (*rows[0][:MOST_BASES], UNKNOWN)
         found: list[Value] = []
         while rows := [row for row in rows if row]:
             tails = [base for row in rows for base in row[1:]]
             head = next((row[0] for row in rows if row[0] not in tails), None)
-            if head is None or len(found) > MOST_ITEMS:
+            if head is None:
                 return (*found, UNKNOWN)
             found.append(head)
             rows = [row[1:] if row[0] == head else row for row in rows]

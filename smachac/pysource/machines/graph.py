@@ -535,14 +535,15 @@ class _Children:
         self.jumps = builder.framework(made).jumps
         self.incomplete = not complete
         self.labels: set[str] = set()
-        self.open_labels: list[OpenText] = []
+        self.open_starts: frozenset[str] = frozenset()
         self.outside: dict[str, Span] = {}
         self.choices: list[Leaf] = []
 
     def build(self, added: Sequence[Added], depth: int) -> tuple[Node, ...]:
         known = [one for one in added if _text(one.label) is not None]
         self.labels = {text for one in known if (text := _text(one.label)) is not None}
-        self.open_labels = [one.label for one in known if isinstance(one.label, OpenText)]
+        labels = (one.label for one in known)
+        self.open_starts = frozenset(one.start for one in labels if isinstance(one, OpenText))
         known = _one_for_each_name(known)
         for one in (*(one for one in added if _text(one.label) is None), *known):
             if _text(one.label) is None:
@@ -674,7 +675,8 @@ class _Children:
             return False
         name = _text(target) or ""
         known = name in {outcome for outcome, _ in self.outcomes or ()}
-        return not name or known or not any(label.can_be(name) for label in self.open_labels)
+        starts = (name[:end] for end in range(len(name) + 1))
+        return not name or known or self.open_starts.isdisjoint(starts)
 
     def _remaps(self, added: Added) -> Iterator[Remap]:
         given = added.remapping

@@ -20,6 +20,7 @@ from smachac.pysource.machines.values import (
     TupleValue,
     Unknown,
     Value,
+    open_text,
 )
 
 LONGEST_TEXT, MOST_ITEMS, MOST_BITS = 100_000, 10_000, 1_000
@@ -106,7 +107,7 @@ def filled_in(text: str, right: Value, span: Span | None) -> Value:
         found = text % values
     except (TypeError, ValueError, OverflowError):
         return UNKNOWN
-    return OpenText(text=found) if is_open else bounded(found, span)
+    return open_text(found) if is_open else bounded(found, span)
 
 
 def _data(value: Value) -> object:
@@ -127,7 +128,7 @@ def formatted(parts: Iterable[Value], span: Span | None) -> Value:
         if size > LONGEST_TEXT:
             return UNKNOWN
     whole = "".join(texts)
-    return OpenText(text=whole) if is_open else Const(whole, span)
+    return open_text(whole) if is_open else Const(whole, span)
 
 
 def has_width(text: str) -> bool:

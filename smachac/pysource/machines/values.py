@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import ast
 import itertools
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol, TypeAlias
 
@@ -72,10 +71,19 @@ class OpenText(Unknown):
 
     text: str
 
-    def can_be(self, text: str) -> bool:
-        """Whether this can be a known text."""
-        pattern = re.sub(r"\\\{.*?\\\}", ".*", re.escape(self.text))
-        return re.fullmatch(pattern, text, re.DOTALL) is not None
+    @property
+    def start(self) -> str:
+        """The part before the first open part, with which each text begins that this can be."""
+        return self.text.partition("{")[0]
+
+
+def open_text(text: str) -> Value:
+    """A text with an open part, if it is no longer than a name."""
+    return OpenText(text=text) if len(text) <= LONGEST_NAME else UNKNOWN
+
+
+LONGEST_NAME = 200
+"""The most characters of a text with an open part."""
 
 
 @dataclass(frozen=True, slots=True)
