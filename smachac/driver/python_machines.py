@@ -35,7 +35,7 @@ from smachac.pysource.machines.libraries import FRAMEWORKS
 from smachac.pysource.machines.project import Repository, module_text
 from smachac.pysource.machines.roots import Roots, machines_of, variants_of
 from smachac.pysource.machines.values import UseFault
-from smachac.pysource.python2 import INSTALL, is_installed, looks_like_python2
+from smachac.pysource.python2 import INSTALL, is_installed, looks_like_python2, python2_error
 from smachac.pysource.source import (
     LONGEST,
     PythonText,
@@ -308,8 +308,15 @@ def _unreadable(source: Source) -> Diagnostic:
             help = "end its lines with a line feed"
         return errors.unreadable_module(span, message, help)
     message = f"this is not valid Python 3: {word.text.partition('. Maybe you meant')[0]}"
-    help = "correct the code at the mark"
-    return errors.unreadable_module(word.span, message, help)
+    help, place = "correct the code at the mark", word.span
+    of_python2 = python2_error(source) if looks_like_python2(source) else None
+    if of_python2 is not None:
+        message, place = "this is valid neither in Python 2 nor in Python 3", of_python2
+        if place.start == len(source.text):
+            help = "close the bracket or text that is open at the end of the file"
+    if place.source.line(place.line).startswith("<<<<<<<"):
+        help = "keep one version, and remove the lines with `<<<<<<<`, `=======` and `>>>>>>>`"
+    return errors.unreadable_module(place, message, help)
 
 
 def _checked(graph: Graph, rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:

@@ -650,3 +650,57 @@ def test_a_comment_about_a_finding_that_only_all_rules_report_is_used(tmp_path: 
     path = tmp_path / "machine.py"
     report = PythonProject(Disk()).read(path, everything=True).report
     assert "SM105" not in {item.code for item in report}
+
+
+PYTHON_2 = """import smach
+
+class Do(smach.State):
+\tdef __init__(self):
+\t\tsmach.State.__init__(self, outcomes=["ok"], input_keys=["part"])
+
+\tdef execute(self, userdata):
+\t\tprint "Do", userdata.prat, "größer", `userdata.other`
+\t\ttry:
+\t\t\tuserdata.prt = 1; x = 1 <> 2
+\t\texcept ValueError, error: return "k"
+\t\treturn "ok"
+
+sm = smach.StateMachine(outcomes=["done"])
+with sm:
+\tsm.add("A", Do(), transitions={"ok": "doen",
+\t\t"okay": "done"})
+"""
+
+
+def test_places_in_python_2_are_those_of_the_code(tmp_path: Path) -> None:
+    path = tmp_path / "machine.py"
+    path.write_text(PYTHON_2, "utf-8")
+    report = PythonProject(Disk()).read(path).report
+    assert [(item.code, item.span.line, item.span.text) for item in report] == [
+        ("SM310", 8, "prat"),
+        ("SM310", 8, "other"),
+        ("SM309", 11, '"k"'),
+        ("SM101", 16, '"doen"'),
+        ("SM102", 17, '"okay"'),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("code", "line", "message", "help"),
+    [
+        ('print "a"\nx = = 3\n', 2, "this is valid neither in Python 2 nor in Python 3", "mark"),
+        ('print "a"\nx = (1,\n', 3, "this is valid neither in Python 2 nor in Python 3", "bracket"),
+        ('print "a"\nif x:\n    y\n  z\n', 4, "this is valid neither in Python 2 nor", "mark"),
+        ("x = = 3\n", 1, "this is not valid Python 3: invalid syntax", "mark"),
+        ("<<<<<<< HEAD\nx = 1\n", 1, "this is not valid Python 3: invalid syntax", "one version"),
+    ],
+)
+def test_the_first_syntax_error_of_both_versions(
+    code: str, line: int, message: str, help: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "machine.py"
+    path.write_text(f"{code}", "utf-8")
+    (item,) = PythonProject(Disk()).read(path).report
+    assert (item.code, item.span.line) == ("SM805", line)
+    assert item.finding.message.startswith(message)
+    assert help in (item.finding.help or "")
