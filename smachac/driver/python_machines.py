@@ -381,7 +381,8 @@ def _of_uses(faults: Sequence[UseFault]) -> Iterator[Diagnostic]:
             case "shared transitions":
                 yield errors.shared_transitions(fault.span, name, fault.other)
             case "missing member":
-                which = fault.span.source, *fault.names[1:]
+                _, module, home = fault.names
+                which = fault.span.source, module, home
                 members.setdefault(which, []).append(Word(name, fault.span))
             case "repeated key":
                 yield errors.repeated_key(Word(name, fault.span), fault.other)

@@ -141,6 +141,7 @@ def test_a_parameter_of_a_method_is_another_one_in_each_call(tmp_path: Path) -> 
         "utf-8",
     )
     read = PythonProject(Disk()).read(path)
+    assert read.coverage is not None
     assert [place.reason for place in read.coverage.unknown] == ["its name is not known"]
 
 
