@@ -42,8 +42,6 @@ from smachac.pysource.ros_names import ROS_VERSIONS
 from smachac.pysource.user_code import Declared, ProjectCode
 from smachac.records import dataclass, field
 from smachac.targets import BuildContext, Files, Target, errors, load_target
-from smachac.targets.hiding_files import hiding_files
-from smachac.targets.runtime_files import runtime_files
 
 TYPE_CHECKING = False  # annotations only: a check of scripts reads no machines in Python
 if TYPE_CHECKING:
@@ -315,6 +313,8 @@ def compile_script(
     levels: int = 0,
 ) -> Compiled:
     """Emit the files of a target for an analysed script. `levels`: see BuildContext."""
+    from smachac.targets.runtime_files import runtime_files
+
     if analysis.checked is None or analysis.library is None:
         return Compiled({}, analysis.report)
     found: Report = []
@@ -334,6 +334,8 @@ def compile_files(
     levels: int = 0,
 ) -> Compiled:
     """As `compile_script`, for files that are written: none of them hides a module (SM611)."""
+    from smachac.targets.hiding_files import hiding_files
+
     files, report = compile_script(analysis, target, options, levels)
     hiding = list(hiding_files(files, analysis.checked)) if analysis.checked is not None else []
     return Compiled({} if hiding else files, merged(report, hiding))

@@ -210,17 +210,15 @@ def fits_limits(source: Source, report: Report) -> bool:
     return bad is None
 
 
-# The characters that are not printable: YAML 1.2.2, section 5.1.
-_UNPRINTABLE = re.compile(
-    "[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
-)
-
-
 def _unprintable(text: str) -> re.Match[str] | None:
-    """The first character that is not printable."""
+    """The first character that is not printable: YAML 1.2.2, section 5.1."""
     if text.replace("\n", "").isprintable():  # quicker; fewer characters are printable for Python
         return None
-    return _UNPRINTABLE.search(text)
+    # Compiled here, because that takes 5 ms, and few texts have such characters.
+    unprintable = (
+        "[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
+    )
+    return re.search(unprintable, text)
 
 
 def events(text: str) -> Iterator[Any]:

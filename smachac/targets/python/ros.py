@@ -16,7 +16,6 @@ from smachac.pysource.ros_names import ROS_VERSIONS, Ros
 from smachac.records import dataclass
 from smachac.targets import BuildContext, OptionError
 from smachac.targets.errors import unsupported_by_target
-from smachac.targets.python.python2 import parsed
 
 _WORDS = re.compile(r"[/.]")
 
@@ -122,6 +121,8 @@ def unsupported(machine: Machine, ros: Ros) -> Iterator[Diagnostic]:
         for expression in expressions(node):
             if not any(name in expression.text for name in OTHER_MODULES[ros]):
                 continue
+            from smachac.targets.python.python2 import parsed
+
             tree = parsed(expression.text.strip())
             used = other_modules(tree, ros) if isinstance(tree, ast.Module) else ()
             for name in dict.fromkeys(name for _, name in used):
