@@ -51,4 +51,4 @@ def test_a_check_of_ten_states_loads_no_module_that_it_does_not_need(tmp_path: P
         if any(module == name or module.startswith(f"{name}.") for name in NOT_NEEDED)
     ]
     assert loaded == []
-    assert sum(module.startswith("smachac") for module in modules) <= 265
+    assert sum(module.startswith("smachac") for module in modules) <= 204

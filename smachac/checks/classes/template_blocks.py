@@ -27,7 +27,7 @@ def _unprinted_parts(context: Context) -> Iterator[Finding]:
         yield from _not_printed(body)
 
 
-unprinted_parts = Rule(code=template_error.code, function=_unprinted_parts)
+unprinted_parts = Rule(code=template_error.code, function=_unprinted_parts, about_code=True)
 """The warnings of SM605: what a template can print, and does not."""
 
 

@@ -215,9 +215,7 @@ def _unprintable(text: str) -> re.Match[str] | None:
     if text.replace("\n", "").isprintable():  # quicker; fewer characters are printable for Python
         return None
     # Compiled here, because that takes 5 ms, and few texts have such characters.
-    unprintable = (
-        "[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
-    )
+    unprintable = "[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
     return re.search(unprintable, text)
 
 
