@@ -39,11 +39,14 @@ from smachac.analysis.uses import place_of
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir import nodes
 from smachac.ir.leaf import functions, key_names, variable_of
-from smachac.ir.message_types import Definitions
 from smachac.ir.nodes import Container, Data, Expression, Key, Leaf, Machine, Node, Struct, Variable
 from smachac.ir.traversal import outer_inputs, outer_outputs
 from smachac.ir.types import ANY, Type
 from smachac.records import dataclass, field
+
+TYPE_CHECKING = False  # annotations only: most machines have no messages
+if TYPE_CHECKING:
+    from smachac.ir.message_types import Definitions
 
 MOST_FLOWS = 64
 """The most values of one type that are distinguished in one cell."""

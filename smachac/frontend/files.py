@@ -29,8 +29,7 @@ from smachac.frontend.config import (
 )
 from smachac.frontend.errors.script import too_big, unreadable_file
 from smachac.frontend.loader import ROBOT_FILES, SUFFIXES, Library
-from smachac.frontend.text.yaml_recovery import parse_with_recovery
-from smachac.frontend.text.yaml_tree import Tree
+from smachac.frontend.text.yaml_tree import Tree, parse_with_recovery
 from smachac.pysource.ros_names import Ros
 from smachac.robots.encodings import EncodingError, decoded
 
@@ -224,7 +223,7 @@ class Disk:
         return self._sources.get(path, (None, []))[0]
 
     def parse(self, source: Source, report: Report) -> Tree | None:
-        """As `yaml_recovery.parse_with_recovery`."""
+        """As `yaml_tree.parse_with_recovery`."""
         if source not in self._trees:
             found: Report = []
             tree = self._parse_in_pieces(source) or parse_with_recovery(source, found)

@@ -25,7 +25,7 @@ from smachac.driver import Analysis, MachineCheck, analyse
 from smachac.driver.batch import Batch, analyse_alone
 from smachac.frontend.config import PROJECT_FILES
 from smachac.frontend.loader import Library
-from smachac.frontend.text.yaml_recovery import parse_with_recovery
+from smachac.frontend.text.yaml_tree import parse_with_recovery
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
 from smachac.repair.operators import (

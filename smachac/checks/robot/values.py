@@ -11,8 +11,6 @@ from smachac.analysis.reaching_values import reaching_flows
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
 from smachac.analysis.units import FULL_TURN, conversion, other_units
-from smachac.checks.classes.class_value_types import wrong_operations
-from smachac.checks.code.operand_findings import doubtful_comparisons
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.robot.joint_limits import joint_faults
 from smachac.checks.robot.literal_parts import moves_arm, names_in, part_named, role_of
@@ -468,8 +466,14 @@ def doubtful_unit(context: Context) -> Iterator[Finding]:
         yield from _doubtful(alike, simulated, context.machine.robot)
     for type_ in types.values():
         yield from _doubtful_defaults(type_)
-    yield from doubtful_comparisons(context)
-    yield from wrong_operations(context, "doubt")
+    if context.expression_faults:
+        from smachac.checks.code.operand_findings import doubtful_comparisons
+
+        yield from doubtful_comparisons(context)
+    if context.leaves_with_class:
+        from smachac.checks.classes.class_value_types import wrong_operations
+
+        yield from wrong_operations(context, "doubt")
 
 
 def _doubtful_defaults(type_: StateType) -> Iterator[Finding]:

@@ -9,12 +9,10 @@ from smachac.analysis.expression_errors import kinds
 from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_inference import Cell, Clash
 from smachac.analysis.type_lattice import misfit, present, widened
-from smachac.checks.classes.class_value_types import wrong_loops, wrong_writes
 from smachac.checks.edits import likely
 from smachac.checks.help_text import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.type_words import in_words
-from smachac.checks.types.clash_findings import clash_findings
 from smachac.checks.types.number_help import suggested_number
 from smachac.checks.types.type_origins import cell_owner, written
 from smachac.checks.types.value_places import place_of_part
@@ -82,12 +80,18 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
               transitions: {done: done}
     """
     clashes = [clash for clash in context.clashes["type"] if not _is_function(clash)]
-    yield from clash_findings(clashes, context.machine.aliases)
+    if clashes:
+        from smachac.checks.types.clash_findings import clash_findings
+
+        yield from clash_findings(clashes, context.machine.aliases)
     yield from _lists_for_items(context)
     yield from _without_items(context)
     yield from _wrong_steps(context)
-    yield from wrong_writes(context)
-    yield from wrong_loops(context)
+    if context.leaves_with_class:
+        from smachac.checks.classes.class_value_types import wrong_loops, wrong_writes
+
+        yield from wrong_writes(context)
+        yield from wrong_loops(context)
     for type_ in context.machine.state_types.values():
         yield from _wrong_defaults(type_)
 

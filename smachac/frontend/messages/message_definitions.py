@@ -22,7 +22,6 @@ from smachac.frontend.messages.standard_messages import (
     standard_package,
 )
 from smachac.frontend.resolved_script import State
-from smachac.ir.class_facts import ClassFacts
 from smachac.ir.leaf import given_fields, type_text
 from smachac.ir.message_types import (
     PARTS,
@@ -40,6 +39,10 @@ from smachac.ir.message_types import (
     OtherTypes,
 )
 from smachac.ir.nodes import DEFINITION_KINDS, Expression
+
+TYPE_CHECKING = False  # annotations only: most machines have no classes
+if TYPE_CHECKING:
+    from smachac.ir.class_facts import ClassFacts
 
 LONGEST = 1_000_000
 """The longest file that is read, in characters."""

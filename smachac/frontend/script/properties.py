@@ -59,11 +59,9 @@ _WITHIN = re.compile(r"([0-9]{1,9})(?:[ \t]+states?)?")
 
 
 def properties_of(
-    entry: Entry | None, source: Source, library: Library, report: Report
+    entry: Entry, source: Source, library: Library, report: Report
 ) -> tuple[Property, ...]:
     """The properties of a script: a list, or the name of a file with the list."""
-    if entry is None:
-        return ()
     tree = entry.value
     if isinstance(tree, Scalar) and isinstance(tree.value, str) and not is_known_wrong(tree):
         found = _file(tree, source, library, report)

@@ -18,15 +18,6 @@ from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Piece, Source, Span, Word, new_tuple
 from smachac.frontend.errors.script import duplicate_key, too_big, wrong_shape, yaml_syntax
-from smachac.frontend.text.yaml_errors import (
-    JOINED,
-    SPACE_MISSING,
-    anchor_fault,
-    spaced,
-    stopped_at,
-    syntax_error,
-    too_deep_at,
-)
 from smachac.records import dataclass, field
 from smachac.robots.core_schema import WORDS, value_of
 
@@ -173,6 +164,19 @@ def parse(
     return _build(builder, _moved_back(events(offsets.text), offsets), anomalies)
 
 
+def parse_with_recovery(source: Source, report: Report) -> Tree | None:
+    """As `parse`; of a text with a lost or wrong sign, the tree without that fault."""
+    found: Report = []
+    anomalies = ParseAnomalies([], [], [])
+    tree = parse(source, found, anomalies)
+    if any(anomalies):
+        from smachac.frontend.text.yaml_recovery import recovered
+
+        return recovered(source, tree, found, anomalies, report)
+    report.extend(found)
+    return tree
+
+
 def parse_piece(
     source: Source, piece: Piece, text: str, report: Report, anomalies: ParseAnomalies
 ) -> Tree | None:
@@ -290,6 +294,8 @@ def _build(
     try:
         builder.drive(found)
     except MarkedYAMLError as error:
+        from smachac.frontend.text.yaml_errors import stopped_at, syntax_error, too_deep_at
+
         builder.items = []
         deep = too_deep_at(error)
         if deep is not None:
@@ -477,6 +483,8 @@ class _Builder:
 
     def _check_anchor(self, event: Any) -> None:
         """Reports an anchor of which libyaml reads a part as the value, `&left:home 0.5`."""
+        from smachac.frontend.text.yaml_errors import anchor_fault
+
         fault = anchor_fault(self.source, event.start_mark.index)
         if fault is not None:
             self.report.append(fault)
@@ -655,6 +663,8 @@ class _Builder:
         text = key.value
         if value.start != value.end or not key.plain or not isinstance(text, str):
             return key, value
+        from smachac.frontend.text.yaml_errors import JOINED, SPACE_MISSING, spaced
+
         if JOINED.fullmatch(text) is None or key.end - key.start != len(text):
             return key, value
         colon = key.start + text.index(":")

@@ -44,7 +44,7 @@ from smachac.frontend.types.value_facts import (
     limits_of,
     named,
 )
-from smachac.ir.class_facts import STATE_PARAMETERS, ClassFacts
+from smachac.ir.class_facts import STATE_PARAMETERS
 from smachac.ir.nodes import (
     FunctionResult,
     Key,
@@ -58,6 +58,10 @@ from smachac.ir.nodes import (
 from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.ir.types import ANY, Type, optional
 from smachac.pysource.template_sources import TEMPLATE_FILES
+
+TYPE_CHECKING = False  # annotations only: most state types have no class
+if TYPE_CHECKING:
+    from smachac.ir.class_facts import ClassFacts
 
 _SECTIONS = ("variables", "input_keys", "output_keys", "outcomes", "writes", "code")
 """The fields of an interface that are mappings of names."""
@@ -643,9 +647,12 @@ def _read_template(
 def _parameters(facts: ClassFacts | None) -> dict[str, VariableType]:
     """The variables of a template without an interface: the parameters of its constructor."""
     known = facts.parameters if facts is not None else None
+    if not known:
+        return {}
+
     return {
         parameter.word.text: VariableType(name=parameter.word.text, required=parameter.required)
-        for parameter in known or ()
+        for parameter in known
         if parameter.word.text not in STATE_PARAMETERS
     }
 
