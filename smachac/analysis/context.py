@@ -251,6 +251,10 @@ class Context:
     @cached_property
     def expression_faults(self) -> list[tuple[ExpressionSite, Fault]]:
         """The type errors in the code of the script."""
+        if not self.code_slots and not any(
+            True for _, state in self.states for _ in traversal.expressions(state)
+        ):
+            return []
         from smachac.analysis.expression_sites import faulty_sites
 
         return [*faulty_sites(self._with_values.nodes, self.types, self.machine.state_types)]

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Literal
 
-from smachac.analysis.successors import Arrival, Routes
 from smachac.diagnostics.diagnostic import PathStep, ended, entered
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes
@@ -16,6 +15,10 @@ from smachac.ir.outcome_names import PREEMPTED, fails, successes
 from smachac.ir.script_paths import PlainPaths, steps_in_script
 from smachac.ir.traversal import outcome_names
 from smachac.records import dataclass, field
+
+TYPE_CHECKING = False  # annotations only: few machines have routes
+if TYPE_CHECKING:
+    from smachac.analysis.successors import Arrival, Routes
 
 Answer = Literal["caught", "repeated", "ignored", "not caught", "lost"]
 """What becomes of a failure: another state follows than after a success; the state, or one that

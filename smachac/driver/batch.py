@@ -5,7 +5,6 @@ A sub-script is checked through its callers; one without a caller is checked alo
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -297,6 +296,8 @@ def _caller(
 ) -> Source:
     """A script that calls one sub-script, and ends with its outcomes."""
     ends = list(outcomes)
+    import json
+
     script = {
         "name": "alone",
         "template": "Base",

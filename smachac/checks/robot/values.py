@@ -25,8 +25,11 @@ from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import both, either, listed
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Data, Leaf, Limits, StateType, Struct, VariableType, is_number
-from smachac.ir.robot import MODELS, Robot
 from smachac.ir.types import Type
+
+TYPE_CHECKING = False  # annotations only: few scripts have a robot
+if TYPE_CHECKING:
+    from smachac.ir.robot import Robot
 
 
 @rule(
@@ -373,6 +376,8 @@ def _known_things(context: Context) -> Mapping[str, frozenset[str]]:
     if bodies is not None and robot is not None and (robot.scene or not scene):
         known["body"] = frozenset(bodies.values()) | robot.added | robot.scene
     if simulated:
+        from smachac.ir.robot import MODELS
+
         known["model"] = frozenset(MODELS)
     return known
 

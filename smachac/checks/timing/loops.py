@@ -28,7 +28,6 @@ from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.expressions import Lambda, Name, parse_expression, parts
 from smachac.ir.graph import can_end, reachable
 from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Expression, Leaf, Node, StateMachine, Transition
@@ -514,6 +513,8 @@ def _is_condition(node: Node) -> TypeGuard[Leaf]:
 
 def _is_pure(text: str) -> bool:
     """Whether code computes its value from userdata alone."""
+    from smachac.ir.expressions import Lambda, Name, parse_expression, parts
+
     expr = parse_expression(text)
     if expr is None:
         return False

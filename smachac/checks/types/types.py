@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from smachac.analysis.context import Context
-from smachac.analysis.expression_errors import kinds
-from smachac.analysis.expression_types import type_of_data
+from smachac.analysis.data_types import type_of_data
 from smachac.analysis.type_inference import Cell, Clash
 from smachac.analysis.type_lattice import misfit, present, widened
 from smachac.checks.edits import likely
 from smachac.checks.help_text import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.type_words import in_words
-from smachac.checks.types.number_help import suggested_number
 from smachac.checks.types.type_origins import cell_owner, written
 from smachac.checks.types.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Severity
@@ -136,6 +134,8 @@ def _without_items(context: Context) -> Iterator[Finding]:
     for path, container in context.containers:
         if not isinstance(container, nodes.Iterator) or not container.items_key:
             continue
+        from smachac.analysis.expression_errors import kinds
+
         key = container.items_key
         cell = context.types.cells.get((path, key))
         if cell is None or kinds(cell.holds or cell.declared) != {"number"}:
@@ -236,6 +236,8 @@ def _wrong_defaults(type_: StateType) -> Iterator[Finding]:
             continue
         help = f"write a default that fits `{held.type}`, or correct the type"
         if found.given.name == "literal" and present(found.wanted).name in ("int", "float"):
+            from smachac.checks.types.number_help import suggested_number
+
             help = suggested_number(str(found.given.args[0]), present(found.wanted)) or help
         if isinstance(data, str) and data.lower() in ("none", "nil"):
             help = f"write `null` for no value: `{data}` is a text"

@@ -44,7 +44,6 @@ from smachac.frontend.types.value_facts import (
     limits_of,
     named,
 )
-from smachac.ir.class_facts import STATE_PARAMETERS
 from smachac.ir.nodes import (
     FunctionResult,
     Key,
@@ -649,6 +648,7 @@ def _parameters(facts: ClassFacts | None) -> dict[str, VariableType]:
     known = facts.parameters if facts is not None else None
     if not known:
         return {}
+    from smachac.ir.class_facts import STATE_PARAMETERS
 
     return {
         parameter.word.text: VariableType(name=parameter.word.text, required=parameter.required)
