@@ -53,18 +53,17 @@ MOST_CODE = 10_000
 MOST_OTHERS = 100
 """Limit on the types of a package that are searched for fields."""
 
-_NAME = re.compile(r"[A-Za-z]\w*", re.ASCII)
-_TYPE = re.compile(
+_NAME = r"[A-Za-z]\w*"
+_TYPE = (
     r"(?P<name>[A-Za-z]\w*(?:/[A-Za-z]\w*){0,2})(?:<=(?P<longest>\d{1,9}))?"
-    r"(?P<array>\[(?:(?P<size>\d{1,9})|<=(?P<most>\d{1,9}))?\])?",
-    re.ASCII,
+    r"(?P<array>\[(?:(?P<size>\d{1,9})|<=(?P<most>\d{1,9}))?\])?"
 )
 
 
 _CALLED = re.compile(r"(?<![\w.])(?:[a-z]\w*\.msg\.)?[A-Z]\w*(?=\()", re.ASCII)
 """The call of a class, such as that of a message: `Bool(`, `std_msgs.msg.Bool(`."""
 
-_MADE = re.compile(r"(Action|ActionGoal|ActionResult|ActionFeedback|Goal|Result|Feedback)\Z")
+_MADE = r"(Action|ActionGoal|ActionResult|ActionFeedback|Goal|Result|Feedback)\Z"
 """The names of messages that ROS 1 makes of an action."""
 
 
@@ -82,7 +81,7 @@ def type_name(text: str, kind: DefinitionKind) -> TypeName | None:
     """The name that a text means: `std_srvs/Trigger`, `std_srvs/srv/Trigger` or
     `std_srvs.srv.Trigger`; None for any other text."""
     parts = re.split(r"[/.]", text.strip())
-    if not all(_NAME.fullmatch(part) for part in parts):
+    if not all(re.fullmatch(_NAME, part, re.ASCII) for part in parts):
         return None
     match parts:
         case [package, name]:
@@ -313,7 +312,7 @@ def missing_definitions_of(
 
 def missing_type(word: TypeName, kind: DefinitionKind, library: Library) -> Missing | None:
     """What is known about a type that its package does not have; None if it can exist."""
-    made = _MADE.search(word.name) if kind != "srv" else None
+    made = re.search(_MADE, word.name) if kind != "srv" else None
     names = _names_in(word.package, kind, library)
     if made is not None:
         action = TypeName(word.package, word.name[: made.start()])
@@ -441,7 +440,7 @@ def _declaration(line: str, span: Span, package: str) -> MessageField | MessageC
     word, _, rest = line.replace("\t", " ").partition(" ")
     wanted = _field_type(word, package)
     rest = rest.lstrip()
-    named = _NAME.match(rest)
+    named = re.match(_NAME, rest, re.ASCII)
     if wanted is None or named is None:
         return None
     start = span.start + len(line) - len(rest)
@@ -477,7 +476,7 @@ def _without_comment(text: str) -> str:
 
 def _field_type(word: str, package: str) -> FieldType | None:
     """The type of a text; the name of a message gets the package around it if it has none."""
-    found = _TYPE.fullmatch(word)
+    found = re.fullmatch(_TYPE, word, re.ASCII)
     if found is None:
         return None
     name: str = found["name"]

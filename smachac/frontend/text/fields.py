@@ -149,7 +149,7 @@ def _recovered_entries(tree: Seq) -> tuple[Entry, ...]:
     return tuple(entries)
 
 
-_ARROW = re.compile(r"\s*(\w+)\s*(?:->|=>|\u2192|=|;|:)\s*(\w+)\s*")
+_ARROW = r"\s*(\w+)\s*(?:->|=>|\u2192|=|;|:)\s*(\w+)\s*"
 """A transition written as in a drawing, `held -> LIFT`, or with another wrong sign."""
 
 
@@ -160,7 +160,7 @@ def _arrows(tree: Tree) -> tuple[Entry, ...]:
         return ()
     entries, start = [], tree.start
     for part in re.split("[,\n]", tree.span.text):
-        found = _ARROW.fullmatch(part)
+        found = re.fullmatch(_ARROW, part)
         if found is None:
             return ()
         key, value = (

@@ -35,9 +35,7 @@ Parser = Callable[[Source, Report], "Tree | None"]
 """`yaml_tree.parse`, or a function that returns a tree it made before."""
 
 MARK = "smachac:"
-_COMMENT = re.compile(
-    r"(?:^|(?<=\s))#[^\S\n]*smachac:[^\S\n]*(?P<verb>[^\s]*)(?P<rest>[^\n]*)", re.M
-)
+_COMMENT = r"(?:^|(?<=\s))#[^\S\n]*smachac:[^\S\n]*(?P<verb>[^\s]*)(?P<rest>[^\n]*)"
 _CODE = re.compile(r"[^\S\n]*(?P<code>[A-Za-z]{2}\d+)\b[,:]?")
 
 
@@ -55,7 +53,7 @@ def suppressions_in(
     hidden = _scalars(source, parse)
     applied = _lines_applied_to(source)
     found: list[Suppression] = []
-    for comment in _COMMENT.finditer(source.text):
+    for comment in re.finditer(_COMMENT, source.text, re.M):
         before = bisect_right(hidden, (comment.start(), len(source.text)))
         if before and comment.start() < hidden[before - 1][1]:
             continue

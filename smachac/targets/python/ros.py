@@ -17,7 +17,7 @@ from smachac.records import dataclass
 from smachac.targets import BuildContext, OptionError
 from smachac.targets.errors import unsupported_by_target
 
-_WORDS = re.compile(r"[/.]")
+_WORDS = r"[/.]"
 
 OTHER_MODULES = {
     1: ("rclpy", "rclpy_action", "rclpy_lifecycle"),
@@ -83,7 +83,7 @@ def ros_type(text: str, module: str, ros: Ros) -> RosType | None:
     An action of ROS 1 is the message `TestAction`, one of ROS 2 the type `Test`; either name is
     read for both.
     """
-    words = _WORDS.split(text)
+    words = re.split(_WORDS, text)
     if len(words) < 2 or not all(word.isidentifier() for word in words):
         return None
     name = words[-1]
