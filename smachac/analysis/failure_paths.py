@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from typing import Literal
 
 from smachac.diagnostics.diagnostic import PathStep, ended, entered
@@ -14,7 +13,7 @@ from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED, fails, successes
 from smachac.ir.script_paths import PlainPaths, steps_in_script
 from smachac.ir.traversal import outcome_names
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 
 TYPE_CHECKING = False  # annotations only: few machines have routes
 if TYPE_CHECKING:

@@ -7,7 +7,6 @@ take a quarter longer with all of them.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
 from itertools import groupby
 from typing import TypeAlias
 
@@ -17,6 +16,7 @@ from smachac.checks.rule import Rule
 from smachac.diagnostics.diagnostic import Diagnostic, Finding, Problem, Report, diagnostic
 from smachac.ir.nodes import Machine
 from smachac.ir.script_paths import PlainPaths, steps_in_script
+from smachac.records import replace
 
 Rules: TypeAlias = tuple[Rule, ...]
 

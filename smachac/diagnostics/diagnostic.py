@@ -8,7 +8,6 @@ the code (`smachac explain`, docs/rules.md), and the examples in it are a test, 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from enum import Enum
 from functools import lru_cache
 from typing import Generic, ParamSpec
@@ -17,7 +16,7 @@ from smachac.diagnostics.negation import are_unlike
 from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.wording import listed
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 
 P = ParamSpec("P")
 

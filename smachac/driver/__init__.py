@@ -6,7 +6,6 @@ Every command and the public API pass through these functions. Only this module 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import cache, cached_property
 from os import PathLike
 from pathlib import Path
@@ -38,7 +37,7 @@ from smachac.ir.nodes import Checked, Machine, StateType
 from smachac.ir.recursion import deep_recursion
 from smachac.pysource.ros_names import ROS_VERSIONS
 from smachac.pysource.user_code import Declared, ProjectCode
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 from smachac.targets import BuildContext, Files, Target, load_target
 
 TYPE_CHECKING = False  # annotations only: a check of scripts reads no machines in Python

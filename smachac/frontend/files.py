@@ -7,7 +7,6 @@ import errno
 import os
 import stat
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
 
@@ -31,6 +30,7 @@ from smachac.frontend.errors.script import too_big, unreadable_file
 from smachac.frontend.loader import ROBOT_FILES, SUFFIXES, Library
 from smachac.frontend.text.yaml_tree import Tree, parse_with_recovery
 from smachac.pysource.ros_names import Ros
+from smachac.records import replace
 from smachac.robots.encodings import EncodingError, decoded
 
 TYPE_CHECKING = False  # annotations only: few scripts have a robot file or are parsed in pieces

@@ -11,7 +11,6 @@ import re
 import sys
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import islice, pairwise
 from typing import NamedTuple
 
@@ -35,6 +34,7 @@ from smachac.ir.nodes import Machine
 from smachac.ir.outcome_names import OF_SMACH
 from smachac.ir.traversal import walk
 from smachac.ir.types import WORDS as TYPE_WORDS
+from smachac.records import replace
 
 MOST_CANDIDATES = 8
 """The most candidates for one finding: each costs a check of the whole script."""

@@ -6,7 +6,6 @@ Sections: findings, then snippets (source lines with marks).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 from itertools import groupby
 from operator import itemgetter
 from typing import NamedTuple
@@ -14,6 +13,7 @@ from typing import NamedTuple
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, Severity
 from smachac.diagnostics.repair import Certainty
 from smachac.diagnostics.source import NOWHERE, Source, Span
+from smachac.records import replace
 from smachac.report.repair_words import in_words
 from smachac.report.terminal import Line, columns, lay_out, linked, on_one_line, visible, wrapped
 

@@ -26,13 +26,13 @@ OPTIONS: list[dict[str, bool]] = [
 ]
 
 
-def point(decorator: Callable[..., Any], options: dict[str, bool]) -> Any:
-    @decorator(**options)
+def point(made_by: Any, options: dict[str, bool]) -> Any:
+    @made_by.dataclass(**options)
     class Point:
         x: float
         y: float = 0.0
-        names: tuple[str, ...] = dataclasses.field(default=(), repr=False)
-        place: list[int] = dataclasses.field(default_factory=list, compare=False)
+        names: tuple[str, ...] = made_by.field(default=(), repr=False)
+        place: list[int] = made_by.field(default_factory=list, compare=False)
 
     Point.__qualname__ = "Point"
     return Point
@@ -40,7 +40,7 @@ def point(decorator: Callable[..., Any], options: dict[str, bool]) -> Any:
 
 @pytest.mark.parametrize("options", OPTIONS, ids=str)
 def test_a_class_behaves_as_that_of_the_standard_library(options: dict[str, bool]) -> None:
-    made, own = (point(item, options) for item in (records.dataclass, dataclasses.dataclass))
+    made, own = (point(item, options) for item in (records, dataclasses))
     assert str(inspect.signature(made)) == str(inspect.signature(own))
     assert made.__match_args__ == own.__match_args__
     assert hasattr(made(x=1), "__dict__") is hasattr(own(x=1), "__dict__")
@@ -122,26 +122,27 @@ def deep(levels: int) -> _Link:
     return link
 
 
-Make = Callable[..., Any]
+Make = Any
+"""The module `records` or `dataclasses`."""
 
 
-def plain(decorate: Make) -> Any:
-    @decorate(slots=True)
+def plain(made_by: Make) -> Any:
+    @made_by.dataclass(slots=True)
     class Plain:
         first: int
         second: str = "b"
-        many: list[int] = dataclasses.field(default_factory=list)
+        many: list[int] = made_by.field(default_factory=list)
 
     return Plain
 
 
-def keyed(decorate: Make) -> Any:
-    @decorate(frozen=True, slots=True, kw_only=True)
+def keyed(made_by: Make) -> Any:
+    @made_by.dataclass(frozen=True, slots=True, kw_only=True)
     class Keyed:
         kind: ClassVar[str] = "keyed"
         name: str
-        place: int = dataclasses.field(default=0, compare=False, repr=False)
-        parts: tuple[int, ...] = dataclasses.field(default=(1, 2))
+        place: int = made_by.field(default=0, compare=False, repr=False)
+        parts: tuple[int, ...] = made_by.field(default=(1, 2))
 
         @property
         def first(self) -> str:
@@ -150,10 +151,10 @@ def keyed(decorate: Make) -> Any:
     return Keyed
 
 
-def derived(decorate: Make) -> Any:
-    base = keyed(decorate)
+def derived(made_by: Make) -> Any:
+    base = keyed(made_by)
 
-    @decorate(frozen=True, slots=True, kw_only=True)
+    @made_by.dataclass(frozen=True, slots=True, kw_only=True)
     class Derived(base):  # type: ignore[misc, valid-type]
         kind: ClassVar[str] = "derived"
         parts: tuple[int, ...] = ()
@@ -162,8 +163,8 @@ def derived(decorate: Make) -> Any:
     return Derived
 
 
-def with_methods(decorate: Make) -> Any:
-    @decorate(slots=True, unsafe_hash=True)
+def with_methods(made_by: Make) -> Any:
+    @made_by.dataclass(slots=True, unsafe_hash=True)
     class WithMethods:
         value: int
         half: float = 0.0
@@ -177,17 +178,17 @@ def with_methods(decorate: Make) -> Any:
     return WithMethods
 
 
-def without_slots(decorate: Make) -> Any:
-    @decorate(eq=False)
+def without_slots(made_by: Make) -> Any:
+    @made_by.dataclass(eq=False)
     class WithoutSlots:
         value: int = 3
-        made: dict[str, int] = dataclasses.field(default_factory=dict)
+        made: dict[str, int] = made_by.field(default_factory=dict)
 
     return WithoutSlots
 
 
-def empty(decorate: Make) -> Any:
-    @decorate(slots=True)
+def empty(made_by: Make) -> Any:
+    @made_by.dataclass(slots=True)
     class Empty:
         pass
 
@@ -211,8 +212,8 @@ def facts(cls: Any, first: dict[str, Any], second: dict[str, Any]) -> dict[str, 
     fields = dataclasses.fields(cls)
     changed = dataclasses.replace(one, **second)
     return {
-        "parameters": [(item.name, item.kind, item.default) for item in parameters],
-        "fields": [(f.name, f.type, f.default, f.compare, f.repr, f.kw_only) for f in fields],
+        "parameters": [(item.name, item.kind, str(item.default)) for item in parameters],
+        "fields": [(f.name, f.type, f.compare, f.repr, f.kw_only) for f in fields],
         "match": cls.__match_args__,
         "slots": not hasattr(one, "__dict__"),
         "names": (cls.__name__, cls.__qualname__, cls.__module__),
@@ -238,5 +239,5 @@ def _error(cls: Any, arguments: dict[str, Any]) -> str:
 def test_a_derived_class_and_one_with_methods(
     case: Callable[[Make], Any], first: dict[str, Any], second: dict[str, Any]
 ) -> None:
-    ours, theirs = case(records.dataclass), case(dataclasses.dataclass)
+    ours, theirs = case(records), case(dataclasses)
     assert facts(ours, first, second) == facts(theirs, first, second)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.checks.rule import rule
@@ -13,6 +12,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import renamed_name
 from smachac.ir.nodes import StateType
 from smachac.pysource.user_code import Declared, Difference, StateClass, Words
+from smachac.records import replace
 
 
 @rule(

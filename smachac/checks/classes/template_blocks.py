@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.checks.rule import Rule
@@ -14,6 +13,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
 from smachac.pysource.jinja_tags import tags
 from smachac.pysource.user_code import TemplateBody
+from smachac.records import replace
 
 _TEST = re.compile(
     r"\{%[-+]?\s*if\s+(\w+)\s+is\s+defined\s*[-+]?%\}(.*?)\{%[-+]?\s*endif\b", re.DOTALL

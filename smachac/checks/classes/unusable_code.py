@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.checks import notation
@@ -13,6 +12,7 @@ from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span
 from smachac.pysource.template_sources import template_sources, uses_own_templates
 from smachac.pysource.user_code import StateFault
+from smachac.records import replace
 
 
 @rule(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import reaching_flows
@@ -26,6 +25,7 @@ from smachac.diagnostics.wording import both, either, listed
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Data, Leaf, Limits, StateType, Struct, VariableType, is_number
 from smachac.ir.types import Type
+from smachac.records import replace
 
 TYPE_CHECKING = False  # annotations only: few scripts have a robot
 if TYPE_CHECKING:

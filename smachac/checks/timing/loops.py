@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from typing import NamedTuple, TypeGuard
 
 from smachac.analysis.context import Context
@@ -34,6 +33,7 @@ from smachac.ir.nodes import Expression, Leaf, Node, StateMachine, Transition
 from smachac.ir.outcome_names import PREEMPTED, fails, successes
 from smachac.ir.script_code import script_code
 from smachac.ir.traversal import leads_to_child, outcome_names, outer_inputs, outer_outputs, walk
+from smachac.records import replace
 
 PURE = frozenset(["abs", "bool", "float", "int", "len", "max", "min", "round", "str"])
 """Functions whose result depends on their arguments only."""

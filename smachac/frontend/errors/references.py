@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from pathlib import PurePath
 
 from smachac.diagnostics.diagnostic import (
@@ -22,6 +21,7 @@ from smachac.diagnostics.repair import Certainty, Repair
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, guesser_of, respelt
 from smachac.diagnostics.wording import listed
+from smachac.records import replace
 
 _PACKAGE = r"package://|file://|\$\(find|\$\{|\$\("
 """The beginnings of paths that ROS replaces when a program is launched."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Report, Severity
@@ -39,6 +38,7 @@ from smachac.ir.message_types import (
     OtherTypes,
 )
 from smachac.ir.nodes import DEFINITION_KINDS, Expression
+from smachac.records import replace
 
 TYPE_CHECKING = False  # annotations only: most machines have no classes
 if TYPE_CHECKING:

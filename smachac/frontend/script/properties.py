@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 from smachac.diagnostics.diagnostic import Report, did_you_mean
@@ -30,6 +29,7 @@ from smachac.ir.properties import (
     Subject,
     in_words,
 )
+from smachac.records import replace
 
 if TYPE_CHECKING:
     pass

@@ -7,7 +7,6 @@ every state gets its typed fields and its state type. Lowering needs no tree and
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
 from functools import cache
 from pathlib import PurePath
 from typing import Literal
@@ -107,7 +106,7 @@ from smachac.frontend.types.type_annotations import (
 from smachac.frontend.types.type_names import Aliases
 from smachac.ir.nodes import FixedParam, Preset, StateType
 from smachac.pysource.template_sources import TEMPLATE_FILES
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 
 TYPE_CHECKING = False  # annotations only: most scripts have no functions or robot
 if TYPE_CHECKING:

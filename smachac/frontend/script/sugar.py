@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
@@ -38,6 +37,7 @@ from smachac.ir import durations
 from smachac.ir.durations import DURATION, SECONDS
 from smachac.ir.nodes import Expression, Outcome, StateType, Value
 from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED, is_failure
+from smachac.records import replace
 
 NAMES = frozenset(["timeout", "retry", "for_each"])
 """The fields of sugar, except those that are variables of the state type."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import io
 import re
-import tokenize
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -87,6 +86,8 @@ def _scalars(source: Source, parse: Parser) -> list[tuple[int, int]]:
 def _strings(source: Source) -> Iterator[tuple[int, int]]:
     """The ranges of the strings of a Python text, in order, as far as it can be read."""
     starts = source.line_starts
+    import tokenize
+
     with contextlib.suppress(tokenize.TokenError, SyntaxError):
         for token in tokenize.generate_tokens(io.StringIO(source.text, newline="\n").readline):
             if MARK in token.string and token.type != tokenize.COMMENT:

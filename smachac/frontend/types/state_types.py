@@ -7,7 +7,6 @@ template without either is an open type: any field is accepted, and nothing is k
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import TypeVar, get_args
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, did_you_mean
@@ -57,6 +56,7 @@ from smachac.ir.nodes import (
 from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.ir.types import ANY, Type, optional
 from smachac.pysource.template_sources import TEMPLATE_FILES
+from smachac.records import replace
 
 TYPE_CHECKING = False  # annotations only: most state types have no class
 if TYPE_CHECKING:

@@ -4,11 +4,11 @@ what a script declares, and the template that makes the state."""
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.frontend.loader import Library
 from smachac.frontend.types import smacha_meta
+from smachac.records import replace
 
 TYPE_CHECKING = False  # annotations only: most state types have no class
 if TYPE_CHECKING:
