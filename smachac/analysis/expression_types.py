@@ -9,9 +9,9 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Mapping
 
-from smachac.analysis.data_types import DEEPEST, mapping_type, tuple_type, type_of_data
 from smachac.analysis.type_lattice import (
     BOOL,
+    DEEPEST,
     DICT,
     FLOAT,
     INT,
@@ -25,8 +25,11 @@ from smachac.analysis.type_lattice import (
     items,
     joined,
     mapping,
+    mapping_type,
     plain,
     present,
+    tuple_type,
+    type_of_literal,
     unit_of,
     widened,
 )
@@ -67,7 +70,7 @@ def type_of(expr: Expr, names: Names) -> Type:
     """
     match expr:
         case Constant(value):
-            return type_of_data(value)
+            return type_of_literal(value)
         case Name(name):
             return names.get(name, ANY)
         case Attribute(value, name):

@@ -41,8 +41,8 @@ def texts(context: Context) -> bool:
 
 
 def userdata(context: Context) -> bool:
-    """Keys, or code that can use some."""
-    return texts(context) or any(
+    """Keys, or code that can use some; declarations of the script that are not used."""
+    return texts(context) or bool(context.machine.unused) or any(
         node.inputs or node.outputs or node.remaps
         or (not isinstance(node, Leaf) and node.userdata)
         or isinstance(node, nodes.Iterator)

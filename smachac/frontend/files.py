@@ -28,7 +28,8 @@ from smachac.frontend.config import (
 )
 from smachac.frontend.errors.script import too_big, unreadable_file
 from smachac.frontend.loader import ROBOT_FILES, SUFFIXES, Library
-from smachac.frontend.text.yaml_tree import Tree, parse_with_recovery
+from smachac.frontend.text.recovering_parser import parse_with_recovery
+from smachac.frontend.text.yaml_tree import Tree
 from smachac.pysource.ros_names import Ros
 from smachac.records import replace
 from smachac.robots.encodings import EncodingError, decoded
@@ -223,7 +224,7 @@ class Disk:
         return self._sources.get(path, (None, []))[0]
 
     def parse(self, source: Source, report: Report) -> Tree | None:
-        """As `yaml_tree.parse_with_recovery`."""
+        """As `parse_with_recovery`."""
         if source not in self._trees:
             found: Report = []
             tree = self._parse_in_pieces(source) or parse_with_recovery(source, found)

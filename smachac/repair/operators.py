@@ -21,15 +21,8 @@ from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.diagnostics.spelling import slips, words_of
 from smachac.frontend import schema
 from smachac.frontend.text.fields import PRESET_FIELDS
-from smachac.frontend.text.yaml_tree import (
-    Entry,
-    Map,
-    Scalar,
-    Seq,
-    Tree,
-    parse,
-    parse_with_recovery,
-)
+from smachac.frontend.text.recovering_parser import parse_with_recovery
+from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree, parse
 from smachac.ir.nodes import Machine
 from smachac.ir.outcome_names import OF_SMACH
 from smachac.ir.traversal import walk

@@ -24,7 +24,7 @@ from smachac.driver import Analysis, MachineCheck, analyse
 from smachac.driver.batch import Batch, analyse_alone
 from smachac.frontend.config import PROJECT_FILES
 from smachac.frontend.loader import Library
-from smachac.frontend.text.yaml_tree import parse_with_recovery
+from smachac.frontend.text.recovering_parser import parse_with_recovery
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
 from smachac.records import replace

@@ -87,7 +87,10 @@ def numbers_only(rng: random.Random, depth: int = 0) -> list[str]:
         indent = "  " * (2 * depth + 1)
         lines.append(f"{indent}- {name}:")
         kind = rng.randrange(3) if depth < 2 else 0
-        body = ["template: SleepState", f"time: {rng.choice(['1', '-0.5', '1e9', '400'])}"]
+        body = [
+            "template: SleepState",
+            f"time: {rng.choice(['1', '-0.5', '1e9', '[params, wait]'])}",
+        ]
         if kind == 1:
             body = ["template: StateMachine", "outcomes: [done, failed]", "states:"]
         elif kind == 2:
@@ -105,8 +108,13 @@ def numbers_only(rng: random.Random, depth: int = 0) -> list[str]:
 @pytest.mark.parametrize("seed", seeds(20, 60, 400))
 def test_states_whose_values_are_numbers(seed: int, tmp_path: Path) -> None:
     main = tmp_path / "main.yml"
-    states = "\n".join(numbers_only(random.Random(seed)))
-    main.write_text(f"name: sm\ntemplate: Base\noutcomes: [done, failed]\nstates:\n{states}\n")
+    rng = random.Random(seed)
+    states = "\n".join(numbers_only(rng))
+    declared = rng.choice(
+        ["params: {wait: 2.0}", "types: {Load: int}\nparams: {wait: 1, spare: 2}"]
+    )
+    head = f"name: sm\ntemplate: Base\noutcomes: [done, failed]\n{declared}\n"
+    main.write_text(f"{head}states:\n{states}\n")
     context = judged(main)
     assert context is not None
     assert not subjects.texts(context)

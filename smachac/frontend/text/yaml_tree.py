@@ -164,19 +164,6 @@ def parse(
     return _build(builder, _moved_back(events(offsets.text), offsets), anomalies)
 
 
-def parse_with_recovery(source: Source, report: Report) -> Tree | None:
-    """As `parse`; of a text with a lost or wrong sign, the tree without that fault."""
-    found: Report = []
-    anomalies = ParseAnomalies([], [], [])
-    tree = parse(source, found, anomalies)
-    if any(anomalies):
-        from smachac.frontend.text.yaml_recovery import recovered
-
-        return recovered(source, tree, found, anomalies, report)
-    report.extend(found)
-    return tree
-
-
 def parse_piece(
     source: Source, piece: Piece, text: str, report: Report, anomalies: ParseAnomalies
 ) -> Tree | None:
