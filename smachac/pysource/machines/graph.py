@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import PurePath
 from typing import Any, Literal, NamedTuple, Protocol, TypeVar
 
@@ -65,6 +64,7 @@ from smachac.pysource.machines.values import (
     text_of,
     truth,
 )
+from smachac.records import replace
 
 AnyContainer = TypeVar("AnyContainer", bound=Container)
 
