@@ -28,6 +28,8 @@ from smachac.pysource.syntax_tree import walk_code
 from smachac.records import dataclass
 
 T = TypeVar("T")
+Candidate = Callable[[bool], object]
+"""Calls a function or class with unknown arguments; if True, also for parameters with a default."""
 
 _WORDS = frozenset(
     word
@@ -83,24 +85,30 @@ def _built(
     evaluator: Evaluator, module: ModuleValue, file: str, read: Callable[[Roots], T], *,
     variants: bool,
 ) -> Iterator[T]:  # fmt: skip
-    """What `read` makes of the machines that single functions and classes build."""
+    """What `read` makes of the machines that single functions and classes build. Those that build
+    none with their default values, which can be refused, get unknown values for these too."""
     for candidate in _candidates(evaluator, module, variants=variants):
-        mark, before = evaluator.heap.mark(), len(evaluator.made)
-        orphans = evaluator.orphans
-        complete = True
-        evaluator.renew()
-        try:
-            candidate()
-        except (BudgetError, RecursionError):
-            complete = False
-            evaluator.reset()
-        evaluator.opened.clear()
-        if evaluator.orphans == orphans:
-            yield read(_roots(evaluator, before, file, closed=False, complete=complete))
-        evaluator.heap.undo(mark)
-        if complete:  # else all marks are given up
-            evaluator.heap.release(mark)
-        del evaluator.made[before:]
+        for unknown in (True,) if variants else (False, True):
+            mark, before = evaluator.heap.mark(), len(evaluator.made)
+            orphans = evaluator.orphans
+            complete = True
+            evaluator.renew()
+            try:
+                candidate(unknown)
+            except (BudgetError, RecursionError):
+                complete = False
+                evaluator.reset()
+            evaluator.opened.clear()
+            found = _roots(evaluator, before, file, closed=False, complete=complete)
+            is_own = evaluator.orphans == orphans
+            if is_own and found.containers:
+                yield read(found)
+            evaluator.heap.undo(mark)
+            if complete:  # else all marks are given up
+                evaluator.heap.release(mark)
+            del evaluator.made[before:]
+            if found.containers or not (is_own and complete):
+                break
 
 
 def _roots(evaluator: Evaluator, before: int, file: str, *, closed: bool, complete: bool) -> Roots:
@@ -142,7 +150,7 @@ def _children(container: Instance) -> tuple[Added, ...]:
 
 def _candidates(
     evaluator: Evaluator, module: ModuleValue, *, variants: bool
-) -> Iterator[Callable[[], object]]:
+) -> Iterator[Candidate]:
     """The functions and classes of a module that can build containers: those that nothing calls,
     functions that others call last, because they may be called by then; for `variants` all."""
     frame = Frame(module.slots, module)
@@ -157,15 +165,16 @@ def _candidates(
                     is_new = variants or value.node not in evaluator.called
                     if is_new and _builds(value.node, module):
                         evaluator.called.add(value.node)
-                        given = _unknown(value, variants=variants)
-                        yield lambda value=value, given=given: evaluator.run(value, given)  # type: ignore[misc]
+                        yield lambda unknown, value=value: evaluator.run(  # type: ignore[misc]
+                            value, _unknown(value, variants=unknown)
+                        )
                 case Class() if value.frame.module is module:
                     yield from _of_class(evaluator, value, module, frame, variants=variants)
 
 
 def _of_class(
     evaluator: Evaluator, cls: Class, module: ModuleValue, frame: Frame, *, variants: bool
-) -> Iterator[Callable[[], object]]:
+) -> Iterator[Candidate]:
     """Builds an object, and calls those of its methods that nothing calls. Of a class of which the
     main part of the file has made an object, only the methods count."""
     order = evaluator.classes(cls)
@@ -183,17 +192,17 @@ def _of_class(
     if is_made and (is_own or not methods):
         return
 
-    def build() -> None:
+    def build(unknown: bool) -> None:
         arguments = Arguments()
         if isinstance(maker, Function):
-            arguments = _unknown(maker, variants=variants).without_first()
+            arguments = _unknown(maker, variants=unknown).without_first()
         before = len(evaluator.made)
         made = evaluator.make(cls, arguments, _place(module, cls), frame)
         if is_made:
             del evaluator.made[before:]
         for method in methods:
-            if variants or method.node not in evaluator.called:
-                given = _unknown(method, variants=variants, once=False)
+            if unknown or method.node not in evaluator.called:
+                given = _unknown(method, variants=unknown, once=False)
                 evaluator.run(method, given.without_first().with_first(made))
 
     yield build

@@ -284,6 +284,34 @@ if __name__ == "__main__":
     Tour("tour")
     vendor.spin()
 """,
+    "a constructor that refuses its default value": """
+class Tour(smach.StateMachine):
+    def __init__(self, places=None, *, last="done"):
+        smach.StateMachine.__init__(self, outcomes=["done"])
+        if places is None:
+            raise ValueError("no places")
+        with self:
+            self.add("A", Do(), {"ok": "B"})
+            self.add("B", Do(), {"ok": "done"})
+""",
+    "a function that ends without an argument": """
+def build(robot=None):
+    if robot is None:
+        return None
+    sm = smach.StateMachine(outcomes=["done"])
+    with sm:
+        smach.StateMachine.add("A", Do(), {"ok": "B"})
+        smach.StateMachine.add("B", Do(), {"ok": "done"})
+    return sm
+""",
+    "a default value that is used": """
+def build(after="B"):
+    sm = smach.StateMachine(outcomes=["done"])
+    with sm:
+        smach.StateMachine.add("A", Do(), {"ok": after})
+        smach.StateMachine.add("B", Do(), {"ok": "done"})
+    return sm
+""",
     "classes from the wrong module of SMACH": """
 import smach_ros
 from smach_ros import StateMachine as Tour
