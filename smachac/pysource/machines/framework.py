@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from smachac.diagnostics.source import Span
+from smachac.pysource.life_cycle import LifeCycle
 from smachac.pysource.machines.heap import Added, Children
 from smachac.pysource.machines.values import (
     NONE,
@@ -20,6 +21,7 @@ from smachac.pysource.machines.values import (
     ListValue,
     TupleValue,
     UseFault,
+    UseKind,
     Value,
     sequence,
 )
@@ -38,9 +40,15 @@ class Framework:
     classes by full name (`smach.StateMachine`), `static` those that need no object, `parameters`
     the parameters of the constructors in their order, where an import needs them. `containers` are
     the classes of containers; `adds` are the methods that add states, and a class that overrides
-    one of `overridden` changes how they are added or run.
+    one of `overridden` changes how they are added or run. `entries` are the methods of its classes
+    that return a machine which the framework runs. `life_cycle` are the methods of a state that it
+    calls.
 
-    `jumps`: an outcome without a transition leads to the state of this name, if there is one.
+    `same_name_exits`: an outcome without a transition ends the container if that has an outcome of
+    this name. `jumps`: it leads to the state of this name, if there is one. `exits` are the
+    outcomes that each container has: they need no transition, and end the containers around it too.
+    `undeclared_outcomes`: a transition for an outcome that the state does not declare is accepted,
+    and taken if the code returns it.
     `effects` are the codes of the rules whose errors are faults in this framework too, each with
     the effect in its terms, or an empty text for that of the rule; None: all rules are about it.
     """
@@ -54,7 +62,12 @@ class Framework:
     static: frozenset[str] = frozenset()
     overridden: frozenset[str]
     parameters: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    entries: frozenset[str] = frozenset()
+    life_cycle: LifeCycle = LifeCycle()
+    same_name_exits: bool = True
     jumps: bool = False
+    exits: tuple[str, ...] = ()
+    undeclared_outcomes: bool = False
     effects: Mapping[str, str] | None = None
 
 
@@ -164,3 +177,11 @@ def listed(slot: str) -> Run:
         return UNKNOWN if items is None else evaluator.new_list(items)
 
     return run
+
+
+def refuse(evaluator: Interpreter, kind: UseKind, name: Const, span: Span) -> None:
+    """Notes that a framework refuses a call, at the name in it."""
+    own = name.span
+    is_inside = own is not None and own.source is span.source and span.start <= own.start < span.end
+    fault = UseFault(kind, own if own is not None and is_inside else span, (str(name.value),))
+    evaluator.faults.append(fault)

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from smachac.pysource.machines import python_library
 from smachac.pysource.machines.builtins import MAKERS
+from smachac.pysource.machines.flexbe_library import FLEXBE
 from smachac.pysource.machines.framework import Framework
 from smachac.pysource.machines.smach_library import SMACH
 from smachac.pysource.machines.values import (
@@ -22,7 +23,7 @@ from smachac.pysource.machines.values import (
 )
 from smachac.pysource.machines.yasmin_library import YASMIN
 
-FRAMEWORKS: tuple[Framework, ...] = (SMACH, YASMIN)
+FRAMEWORKS: tuple[Framework, ...] = (SMACH, YASMIN, FLEXBE)
 """The frameworks whose machines are read."""
 
 _OF_PACKAGE = {package: framework for framework in FRAMEWORKS for package in framework.packages}
