@@ -316,7 +316,8 @@ def _checked(graph: Graph, rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
             yield item
         elif item.severity is Severity.ERROR and item.code in effects:
             effect = effects[item.code] or item.effect
-            yield replace(item, finding=replace(item.finding, effect=effect))
+            severity = Severity.WARNING if item.code in graph.framework.works else item.severity
+            yield replace(item, severity=severity, finding=replace(item.finding, effect=effect))
 
 
 def _cannot_work(item: Diagnostic) -> bool:

@@ -50,7 +50,8 @@ class Framework:
     `undeclared_outcomes`: a transition for an outcome that the state does not declare is accepted,
     and taken if the code returns it.
     `effects` are the codes of the rules whose errors are faults in this framework too, each with
-    the effect in its terms, or an empty text for that of the rule; None: all rules are about it.
+    the effect in its terms, or an empty text for that of the rule; None: all rules are about it. With those in `works` a
+    machine works all the same: they are warnings.
     """
 
     name: str
@@ -69,6 +70,7 @@ class Framework:
     exits: tuple[str, ...] = ()
     undeclared_outcomes: bool = False
     effects: Mapping[str, str] | None = None
+    works: frozenset[str] = frozenset()
 
 
 def classes(prefix: str, names: str) -> dict[str, Value]:
