@@ -40,7 +40,7 @@ from smachac.pysource.source import LONGEST, PythonText, is_readable, syntax_err
 from smachac.records import dataclass
 
 CANNOT_WORK = frozenset({
-    "SM101", "SM102", "SM103", "SM104", "SM106", "SM201", "SM301", "SM308", "SM309", "SM310",
+    "SM101", "SM102", "SM103", "SM104", "SM106", "SM201", "SM301", "SM303", "SM308", "SM309", "SM310",
     "SM403", "SM609",
 })  # fmt: skip
 """The codes of rules that are reported of Python files: with such a fault a machine cannot work.

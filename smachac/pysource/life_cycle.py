@@ -31,8 +31,9 @@ EXECUTE_ONLY = LifeCycle()
 
 def in_cycle(flow: Flow, own: OwnClass, library: UserCode, cycle: LifeCycle) -> Flow:
     """The flow of `execute` together with those of the methods around it. A state can read what its
-    code has set before, also if it is no input: such reads are left out. The keys that are set
-    before an outcome are not known, as earlier calls can have set them."""
+    code has set before, also if it is no input: such reads are left out. So are writes by item,
+    `userdata["key"] = ...`, for which the key need not be an output. The keys that are set before
+    an outcome are not known, as earlier calls can have set them."""
     if not cycle.repeated:
         return flow
     flows = Flows(own, library)
@@ -44,7 +45,8 @@ def in_cycle(flow: Flow, own: OwnClass, library: UserCode, cycle: LifeCycle) -> 
         reads += _reads_before_writes(part, known, _lines(own, name))
         known |= {word.text for word in part.writes} | (part.written or frozenset())
     others = [_flow_of(flows, own, name) for name in cycle.others]
-    writes = [word for part in (*(part for _, part in parts), *others) for word in part.writes]
+    writes = [word for part in (*(part for _, part in parts), *others) for word in part.writes
+              if word.span.text == word.text]  # fmt: skip
     endings = [replace(ending, written=None, skipped=())
                for ending in flow.endings if ending.outcome.text != "None"]  # fmt: skip
     return replace(

@@ -2,7 +2,7 @@
 
 The signatures are those of flexbe_core 1.2 (ROS 1) to 4.0 (ROS 2). A behavior is an object whose
 method `create` builds its state machine. FlexBE accepts the outcomes and keys of states by name
-only.
+only. Containers of `smachac_flexbe`, the module of generated programs, are built as FlexBE's.
 """
 
 from __future__ import annotations
@@ -296,6 +296,12 @@ FLEXBE = Framework(
         "flexbe_core": _MODULE,
         "flexbe_core.proxy": {},
         "flexbe_states": classes("flexbe_states", " ".join(_READY)),
+        ".smachac_flexbe": {
+            **{name: _MODULE[name] for name in
+               ("EventState", "OperatableStateMachine", "ConcurrencyContainer")},
+            "Join": UNKNOWN,
+            "Loop": UNKNOWN,
+        },
     },
     methods={
         **{f"flexbe_core.{name}": _STATE for name in _STATES.split()},
@@ -325,6 +331,7 @@ FLEXBE = Framework(
         "SM201": "the state never runs",
         "SM202": "",
         "SM301": "FlexBE logs an error when the state reads the key, and the state stays active",
+        "SM303": "FlexBE logs an error when the state reads the key, and the state stays active",
         "SM308": "FlexBE logs an error when the state sets the key, and the state stays active",
         "SM309": "FlexBE logs an error after `execute`, and the state stays active",
         "SM310": "FlexBE logs an error when the state reads the key, and the state stays active",

@@ -36,7 +36,8 @@ class Framework:
     """A framework for state machines.
 
     `packages` are its top packages, `modules` the names in its modules that the evaluator models, a
-    module that is not listed being the top package that it is in. `methods` are the methods of its
+    module that is not listed being the top package that it is in; `.name` is the module of a name
+    in any package. `methods` are the methods of its
     classes by full name (`smach.StateMachine`), `static` those that need no object, `parameters`
     the parameters of the constructors in their order, where an import needs them. `containers` are
     the classes of containers; `adds` are the methods that add states, and a class that overrides

@@ -84,8 +84,10 @@ def library_module(known: dict[str, ModuleValue], name: str) -> Value | None:
         return known[name]
     if name in python_library.UNREAD:
         return Unknown(reason=name)
-    head = name.partition(".")[0]
-    return known.get(head) if head in _OF_PACKAGE and name.count(".") == 1 else None
+    head, _, last = name.rpartition(".")
+    if head in _OF_PACKAGE:
+        return known.get(head)
+    return known.get(f".{last}") if head else None
 
 
 def library_constant(module: str, name: str) -> str | None:
