@@ -1,4 +1,4 @@
-"""Python files with machines for SMACH or YASMIN: read, checked by the rules, suppressed."""
+"""Python files with machines for SMACH, YASMIN or FlexBE: read, checked by the rules, suppressed."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from smachac.pysource.source import LONGEST, PythonText, is_readable, syntax_err
 from smachac.records import dataclass
 
 CANNOT_WORK = frozenset({
-    "SM101", "SM102", "SM103", "SM104", "SM106", "SM201", "SM301", "SM303", "SM308", "SM309", "SM310",
+    "SM101", "SM102", "SM103", "SM104", "SM106", "SM201", "SM301", "SM308", "SM309", "SM310",
     "SM403", "SM609",
 })  # fmt: skip
 """The codes of rules that are reported of Python files: with such a fault a machine cannot work.
@@ -48,8 +48,6 @@ Only errors of these are, because a warning can be about a path that is impossib
 branches (SM405) is none of them: both can use parts of one value, as entries of a dictionary."""
 
 _RULES = frozenset(rule.code.code for rule in RULES)
-
-_DEFAULT_RULES = tuple(rule for rule in RULES if rule.code.code in CANNOT_WORK)
 
 IN_ALL = frozenset({"SM201", "SM203"})
 """The codes of findings that count only if they are true of each instance of a container: another
@@ -117,7 +115,6 @@ class PythonProject:
             )
         read_before = [*report]
         whole_rules = everything or MARK in source.text  # a comment can be about any finding
-        rules = RULES if whole_rules else _DEFAULT_RULES
         repository, evaluator, reader = self._repository(path, whole_rules)
         del evaluator.faults[:]
 
@@ -134,13 +131,15 @@ class PythonProject:
         with deep_recursion():
             several = machines_of(repository, evaluator, str(path), made_first)
             whole = [graph for some in several for graph in some]
-            findings = [item for graph in whole for item in _checked(graph, rules)]
+            findings = [item for graph in whole for item in _checked(graph, whole=whole_rules)]
             findings = _in_file(findings, str(path))
             variants: list[Graph] = []
-            if any(item.code in IN_ALL and (everything or _cannot_work(item)) for item in findings):
+            stops = _stops(whole)
+            if any(item.code in IN_ALL and (everything or _is_default(item, stops))
+                   for item in findings):  # fmt: skip
                 some = variants_of(repository, evaluator, str(path), made)
                 variants = [graph for several in some for graph in several]
-                more = (item for graph in variants for item in _checked(graph, rules))
+                more = (item for graph in variants for item in _checked(graph, whole=whole_rules))
                 own = _in_file([*more], str(path))
                 findings += [item for item in own if item.code in IN_ALL]
         report += _true_of_all(findings, [graph.machine for graph in (*whole, *variants)])
@@ -151,7 +150,7 @@ class PythonProject:
         self.disk.searched.update(repository.files_of(str(path)))
         rest, _, _ = suppress([*map(_of_python, report)], source, (source,), CODES)
         if not everything:
-            rest = [item for item in rest if _cannot_work(item)]
+            rest = [item for item in rest if _is_default(item, stops)]
         found = grouped(apply_severities(in_order(rest), library.policy))
         coverage = coverage_of(whole)
         if cache is not None and not read_before:
@@ -307,23 +306,34 @@ def _unreadable(source: Source) -> Diagnostic:
     return errors.unreadable_module(word.span, message, help)
 
 
-def _checked(graph: Graph, rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
-    """The findings of rules about a machine: all, or for a framework with other rules the errors
-    that are faults in it too, with their effects in its terms."""
+def _stops(graphs: Sequence[Graph]) -> frozenset[str]:
+    """The codes of rules that are reported by default: with such a fault a machine cannot work in
+    its framework."""
+    frameworks = {graph.framework.name: graph.framework for graph in graphs}.values()
+    return frozenset().union(*(
+        CANNOT_WORK if framework.effects is None else framework.effects.keys() - framework.works
+        for framework in frameworks
+    ))  # fmt: skip
+
+
+def _checked(graph: Graph, *, whole: bool) -> Iterator[Diagnostic]:
+    """The findings of rules about a machine: of all if `whole`. For a framework with other rules
+    they are the errors that are faults in it too, with their effects in its terms."""
     effects = graph.framework.effects
+    stops = _stops([graph])
+    rules = RULES if whole else tuple(rule for rule in RULES if rule.code.code in stops)
     for item in check_machine(graph.machine, rules):
         if effects is None:
             yield item
         elif item.severity is Severity.ERROR and item.code in effects:
             effect = effects[item.code] or item.effect
-            severity = Severity.WARNING if item.code in graph.framework.works else item.severity
-            yield replace(item, severity=severity, finding=replace(item.finding, effect=effect))
+            yield replace(item, finding=replace(item.finding, effect=effect))
 
 
-def _cannot_work(item: Diagnostic) -> bool:
+def _is_default(item: Diagnostic, stops: frozenset[str]) -> bool:
     """Whether a finding is reported by default: not those of rules about what can work."""
     of_rule = item.code in _RULES
-    return not of_rule or (item.code in CANNOT_WORK and item.severity is Severity.ERROR)
+    return not of_rule or (item.code in stops and item.severity is Severity.ERROR)
 
 
 def _of_python(item: Diagnostic) -> Diagnostic:

@@ -174,6 +174,8 @@ class _Builder:
         complete = isinstance(children, Children) and children.complete and self.roots.complete
         userdata = made.slots.get("userdata")
         known = isinstance(userdata, DictValue) and isinstance(userdata.items, Mapping)
+        known = known and all(self.names(made.slots.get(slot), span) is not None
+                              for slot in ("$inputs", "$outputs"))  # fmt: skip
         self.nodes += len(added)
         inside = made in self.path or depth > MOST_LEVELS or self.nodes > MOST_NODES
         if not complete or not known or inside or self._overrides(made):
@@ -563,7 +565,7 @@ class _Children:
             transitions: tuple[Transition, ...] = ()
             if self.kind in ("StateMachine", "Sequence"):
                 transitions = tuple(self._transitions(node, one, following))
-            found.append(_connected(node, transitions, tuple(self._remaps(one))))
+            found.append(_connected(node, transitions, tuple(self._remaps(node, one))))
         found += self.choices
         if self.incomplete and self.kind != "Iterator":
             names = {*(node.name for node in found), *(name for name, _ in self.outcomes or ())}
@@ -673,7 +675,9 @@ class _Children:
         )  # fmt: skip
         return label
 
-    def _remaps(self, added: Added) -> Iterator[Remap]:
+    def _remaps(self, node: Node, added: Added) -> Iterator[Remap]:
+        keys = {key.name for key in (*node.inputs, *node.outputs)}
+        is_spare = self.framework.undeclared_keys and not (isinstance(node, Leaf) and node.open)
         given = added.remapping
         items = given.items if isinstance(given, DictValue) else {}
         if (given is not None and not isinstance(given, DictValue) and not _is_none(given)) or (
@@ -685,7 +689,7 @@ class _Children:
             name, other = _text(key), _text(value)
             if name is None or other is None:
                 self.incomplete = True
-            else:
+            elif name in keys or not is_spare:
                 yield Remap(key=name, to=other, span=_place(key, added.span),
                             to_span=_place(value, added.span))  # fmt: skip
 

@@ -277,4 +277,5 @@ YASMIN = Framework(
         "SM309": "YASMIN raises an exception after `execute`: the machine stops",
         "SM403": "YASMIN raises an exception when it makes the concurrence: the program stops",
     },
+    works=frozenset(["SM202"]),  # an endless loop can be wanted
 )  # fmt: skip
