@@ -1,4 +1,4 @@
-"""Python files with machines for SMACH, YASMIN or FlexBE: read, checked by the rules, suppressed."""
+"""Python files with machines of a framework: read, checked by the rules, suppressed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TypeAlias
 
 from smachac.checks import RULES, check_machine
-from smachac.checks.rule import Rule
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, grouped, in_order
 from smachac.diagnostics.severities import apply_severities
 from smachac.diagnostics.source import Source, Span, Word

@@ -6,7 +6,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from hypothesis import HealthCheck, given, seed, settings
+from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from smachac.driver import analyse_script
 from smachac.driver.python_machines import PythonProject
@@ -17,9 +17,10 @@ from smachac.ir.traversal import outcome_names
 from smachac.pysource.coverage import coverage_of
 from smachac.targets.flexbe.names import RENAMED, Names, names_of
 from tests.flexbe.programs import files_of
+from tests.pipeline.test_differential import LIBRARY
 from tests.strategies.full_machines import busy_machines
 from tests.support.examples import seeds
-from tests.support.executives import LIBRARY, SCRIPTS
+from tests.support.executives import SCRIPTS
 
 OWN = {to: name for name, to in RENAMED.items()}
 """The names of outcomes in the script, by those that FlexBE gets."""
@@ -85,8 +86,9 @@ def test_examples(script: Path, tmp_path: Path) -> None:
 def test_random_machines(number: int) -> None:
     @seed(number)
     @settings(
-        max_examples=15, database=None, deadline=None, suppress_health_check=list(HealthCheck)
-    )
+        max_examples=15, database=None, deadline=None, phases=[Phase.generate],
+        suppress_health_check=list(HealthCheck),
+    )  # fmt: skip
     @given(busy_machines())
     def check(given: tuple[Machine, tuple[str, int]]) -> None:
         with TemporaryDirectory() as folder:

@@ -49,11 +49,11 @@ class Framework:
     this name. `jumps`: it leads to the state of this name, if there is one. `exits` are the
     outcomes that each container has: they need no transition, and end the containers around it too.
     `undeclared_outcomes`: a transition for an outcome that the state does not declare is accepted,
-    and taken if the code returns it. `undeclared_keys`: so is a remapping of another key, and has
-    no effect.
+    and taken if the code returns it. `undeclared_keys`: a remapping of a key that the state does
+    not have is accepted, and has no effect.
     `effects` are the codes of the rules whose errors are faults in this framework too, each with
-    the effect in its terms, or an empty text for that of the rule; None: all rules are about it. With those in `works` a
-    machine works all the same: only a check with all rules reports them.
+    the effect in its terms, or an empty text for that of the rule; None: all rules are about it.
+    With those in `works` a machine works all the same: only a check with all rules reports them.
     """
 
     name: str
