@@ -6,11 +6,10 @@ import hashlib
 import os
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
 
-from smachac.checks import RULES, check_machine
+from smachac.checks import check_machine, rules
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, grouped, in_order
 from smachac.diagnostics.severities import apply_severities
 from smachac.diagnostics.source import Source, Span, Word
@@ -36,7 +35,7 @@ from smachac.pysource.machines.roots import Roots, machines_of, variants_of
 from smachac.pysource.machines.values import UseFault
 from smachac.pysource.python2 import INSTALL, is_installed, looks_like_python2
 from smachac.pysource.source import LONGEST, PythonText, is_readable, syntax_error
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 
 CANNOT_WORK = frozenset({
     "SM101", "SM102", "SM103", "SM104", "SM106", "SM201", "SM301", "SM308", "SM309", "SM310",
@@ -46,7 +45,9 @@ CANNOT_WORK = frozenset({
 Only errors of these are, because a warning can be about a path that is impossible. A race of two
 branches (SM405) is none of them: both can use parts of one value, as entries of a dictionary."""
 
-_RULES = frozenset(rule.code.code for rule in RULES)
+_ALL_RULES = rules()
+
+_RULES = frozenset(rule.code.code for rule in _ALL_RULES)
 
 IN_ALL = frozenset({"SM201", "SM203"})
 """The codes of findings that count only if they are true of each instance of a container: another
@@ -320,8 +321,8 @@ def _checked(graph: Graph, *, whole: bool) -> Iterator[Diagnostic]:
     they are the errors that are faults in it too, with their effects in its terms."""
     effects = graph.framework.effects
     stops = _stops([graph])
-    rules = RULES if whole else tuple(rule for rule in RULES if rule.code.code in stops)
-    for item in check_machine(graph.machine, rules):
+    chosen = tuple(rule for rule in _ALL_RULES if whole or rule.code.code in stops)
+    for item in check_machine(graph.machine, chosen):
         if effects is None:
             yield item
         elif item.severity is Severity.ERROR and item.code in effects:
@@ -387,6 +388,8 @@ def _of_uses(faults: Sequence[UseFault]) -> Iterator[Diagnostic]:
                 yield errors.state_named_as_outcome(Word(name, fault.span))
             case "no such start state":
                 yield errors.no_start_state(Word(name, fault.span))
+            case _:
+                yield errors.wrong_call(fault.span, fault.kind, fault.names)
     for (_, module), words in members.items():
         yield errors.missing_member(module, words)
 

@@ -11,7 +11,6 @@ import re
 import sys
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import islice, pairwise
 from typing import NamedTuple
 
@@ -22,12 +21,13 @@ from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.diagnostics.spelling import slips, words_of
 from smachac.frontend import schema
 from smachac.frontend.text.fields import PRESET_FIELDS
-from smachac.frontend.text.yaml_recovery import parse_with_recovery
+from smachac.frontend.text.recovering_parser import parse_with_recovery
 from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree, parse
 from smachac.ir.nodes import Machine
 from smachac.ir.outcome_names import OF_SMACH
 from smachac.ir.traversal import walk
 from smachac.ir.types import WORDS as TYPE_WORDS
+from smachac.records import replace
 
 MOST_CANDIDATES = 8
 """The most candidates for one finding: each costs a check of the whole script."""
@@ -192,7 +192,8 @@ def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
     found = [*_near_names(item, text, around.vocabulary)]
     same = _same_keys(item.span, text.tree)
     if same != 1 or item.span.text not in KNOWN_FIELDS:
-        found += _mentioned_names(item, around.others)
+        # The names in code are not those of the script around it.
+        found += _mentioned_names(item, () if item.code == "SM019" else around.others)
     if same > 1:  # which of them is wrong is not known
         found = [_only_possible(made) for made in found]
     found += _unused_names(item, text)
@@ -354,7 +355,7 @@ def _mentioned_names(item: Diagnostic, others: Sequence[str]) -> Iterator[Candid
     own = (*item.finding.arguments[:MOST_WORDS], *near)
     for cost, names in ((1.6, own), (1.7, others)):
         for name in dict.fromkeys(names):
-            if name != word and NAME.fullmatch(name):
+            if name != word and NAME.fullmatch(name) and not _are_of_two_kinds(word, name):
                 yield candidate(cost, RENAME, Edit(span=item.span, text=name))
 
 
@@ -552,7 +553,9 @@ def _moved_out(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
         rest = text[end:last]
         whole = Span(source, start, last)
         if columns > 0 and first < start:
-            operator = f"move them {columns} columns to the left"
+            name, position = inner.key.span.text, source.position
+            after = f"behind line {position(last - 1)[0]}" if rest else "there"
+            operator = f"move `{name}` {after}, {columns} columns to the left"
             yield candidate(1.3, operator, Edit(span=whole, text=rest + moved))
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from typing import NamedTuple, TypeGuard
 
 from smachac.analysis.context import Context
@@ -19,7 +18,6 @@ from smachac.analysis.control_flow import (
     shortest_paths,
     step_graph,
     steps_of,
-    stuck_states,
     way,
 )
 from smachac.analysis.error_recovery import undeclared_writes
@@ -29,13 +27,13 @@ from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.expressions import Lambda, Name, parse_expression, parts
 from smachac.ir.graph import can_end, reachable
 from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Expression, Leaf, Node, StateMachine, Transition
 from smachac.ir.outcome_names import PREEMPTED, fails, successes
 from smachac.ir.script_code import script_code
 from smachac.ir.traversal import leads_to_child, outcome_names, outer_inputs, outer_outputs, walk
+from smachac.records import replace
 
 PURE = frozenset(["abs", "bool", "float", "int", "len", "max", "min", "round", "str"])
 """Functions whose result depends on their arguments only."""
@@ -78,14 +76,7 @@ def trap(context: Context) -> Iterator[Finding]:
           - LOOK: {template: ScriptedState, outcomes: [seen], transitions: {seen: APPROACH}}
           - APPROACH: {template: ScriptedState, outcomes: [near], transitions: {near: PICK}}
     """
-    endless = context.endless
-    for (path, container), whole in zip(context.linear, context.absorbed, strict=True):
-        if isinstance(container, StateMachine) and container.forever:
-            continue
-        flow = outline(path, container, endless, whole)
-        stuck = context.of_container(stuck_states, path, flow)
-        if not stuck:
-            continue
+    for path, (container, flow, stuck) in context.traps.items():
         steps = steps_of(flow)
         children = {child.name: child for child in reversed(container.children)}
         graph = step_graph(steps, steps)
@@ -225,7 +216,7 @@ def unbounded_loop(context: Context) -> Iterator[Finding]:
     for path, container in looping:
         forever = isinstance(container, StateMachine) and container.forever
         whole = outline(path, container, endless)
-        trapped = frozenset(() if forever else stuck_states(whole))
+        trapped = frozenset(context.traps[path].stuck if path in context.traps else ())
         flow = _unpreempted(whole)
         steps = steps_of(flow)
         waits = frozenset(
@@ -522,6 +513,8 @@ def _is_condition(node: Node) -> TypeGuard[Leaf]:
 
 def _is_pure(text: str) -> bool:
     """Whether code computes its value from userdata alone."""
+    from smachac.ir.expressions import Lambda, Name, parse_expression, parts
+
     expr = parse_expression(text)
     if expr is None:
         return False

@@ -7,7 +7,6 @@ every state gets its typed fields and its state type. Lowering needs no tree and
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
 from functools import cache
 from pathlib import PurePath
 from typing import Literal
@@ -49,9 +48,9 @@ from smachac.frontend.script.params import (
     recovered_look_up,
     size_up_to,
 )
-from smachac.frontend.script.properties import properties_of
 from smachac.frontend.script.resolve_cache import CachedCall, ResolveCache, same_objects
 from smachac.frontend.script.state_fields import (
+    NAME_WORDS,
     Entries,
     FieldTable,
     another_state,
@@ -59,6 +58,7 @@ from smachac.frontend.script.state_fields import (
     has_unknown_outcomes,
     has_wrong_transitions,
     is_field,
+    name_as_field,
     read_fields,
     recovered_params,
     second_key,
@@ -72,6 +72,7 @@ from smachac.frontend.script.sub_scripts import (
 )
 from smachac.frontend.script.unknown_templates import (
     Searched,
+    meant_container,
     missing_template,
     missing_template_help,
     unknown_template,
@@ -103,11 +104,15 @@ from smachac.frontend.types.type_annotations import (
     typed,
 )
 from smachac.frontend.types.type_names import Aliases
-from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.nodes import FixedParam, Preset, StateType
-from smachac.ir.robot import Robot
 from smachac.pysource.template_sources import TEMPLATE_FILES
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
+
+TYPE_CHECKING = False  # annotations only: most scripts have no functions or robot
+if TYPE_CHECKING:
+    from smachac.ir.function_facts import FunctionFacts
+    from smachac.ir.properties import Property
+    from smachac.ir.robot import Robot
 
 MAX_STATES = 1_000_000
 """The most states of a script with its sub-scripts."""
@@ -256,7 +261,7 @@ class _Resolver:
             missing_definitions=missing_definitions_of(base, classes, definitions, library),
             other_types=other_types_of(base, definitions, library),
             unused=self.uses.unused(self.report),
-            properties=properties_of(entries.get("properties"), source, self.library, self.report),
+            properties=self._properties(entries.get("properties"), source),
             params=params_of(entries.get("params")),
             fixed_params=tuple(self.fixed_params),
             functions=self._functions(base),
@@ -271,6 +276,13 @@ class _Resolver:
         from smachac.frontend.robots.robots import robot_of
 
         return robot_of(base, source, self.library, self.report)
+
+    def _properties(self, entry: Entry | None, source: Source) -> tuple[Property, ...]:
+        if entry is None:
+            return ()
+        from smachac.frontend.script.properties import properties_of
+
+        return properties_of(entry, source, self.library, self.report)
 
     def _functions(self, base: State) -> Mapping[str, FunctionFacts]:
         """The functions of the user that the states name. Scripts without state types of the user
@@ -471,6 +483,11 @@ class _Resolver:
         nothing = isinstance(first.value, Scalar) and first.value.value is None
         if nothing and rest:
             return self.read(name, expanded(rest, self.report), around)
+        if rest and is_field(rest[0]) and name.text in NAME_WORDS:
+            inner = name_of(first.value)
+            if inner is not None and inner.text:
+                self.report.append(name_as_field(first, inner))
+                return self.read(inner, expanded(rest, self.report), around)
         if nothing or not isinstance(first.value, Map):
             found = kind_of(first.value)
             fault = "is empty" if nothing else f"must be a mapping of variables, not {found}"
@@ -730,9 +747,9 @@ class _Resolver:
             called = [] if role or is_known else self.library.script_names(around.source.name)
             found_in = Searched(searched, names, known, called, other)
             self.not_found(word.text, unknown_template(word, read, found_in, self.other_type))
-            meant = schema.CONTAINERS.get(near or "")
-            if meant is not None:
-                return schema.CONTAINER_TYPES[meant], meant
+            kind = schema.CONTAINERS.get(near or meant_container(word.text, entries))
+            if kind is not None:
+                return schema.CONTAINER_TYPES[kind], kind
             return StateType(name=word.text, open=True), role or nested
         # Some meta blocks of SMACHA name the kind `container` for a state.
         is_container = found.kind == "container" and not found.prints_itself

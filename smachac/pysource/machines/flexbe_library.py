@@ -42,6 +42,7 @@ from smachac.pysource.machines.values import (
     Value,
     sequence,
 )
+from smachac.pysource.machines.wrong_calls import signature
 
 PREEMPTED = "preempted"
 """The outcome with which each state and container can end after a request to stop; it needs no
@@ -316,6 +317,10 @@ FLEXBE = Framework(
     ),
     static=frozenset(["add", "initialize_ros"]),
     overridden=frozenset(["add", "execute"]),
+    signatures={
+        f"flexbe_core.{name}.add": signature("label state transitions", "autonomy remapping")
+        for name in ("OperatableStateMachine", "PriorityContainer", "ConcurrencyContainer")
+    },
     entries=frozenset(["create"]),
     same_name_exits=False,
     exits=(PREEMPTED,),

@@ -38,6 +38,7 @@ from smachac.pysource.machines.values import (
     Value,
     sequence,
 )
+from smachac.pysource.machines.wrong_calls import signature
 
 OUTCOMES = {
     "SUCCEED": "succeeded", "ABORT": "aborted", "FAIL": "failed", "CANCEL": "canceled",
@@ -266,6 +267,11 @@ YASMIN = Framework(
     containers=frozenset(["yasmin.StateMachine", "yasmin.Concurrence", "yasmin.OrthogonalState"]),
     adds=frozenset(["add_state", "add_region"]),
     overridden=frozenset(["add_state", "add_region", "execute"]),
+    signatures={
+        "yasmin.StateMachine.add_state": signature(
+            "self name state", "transitions remappings parameter_mappings"
+        ),
+    },
     jumps=True,
     effects={
         "SM101": "YASMIN raises an exception when the machine starts: none of its states runs",

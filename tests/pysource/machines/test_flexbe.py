@@ -339,12 +339,26 @@ with _state_machine:
     add("BOTH", both, transitions={"over": "finished"})
 """,
 }
+CALL = {
+    "an argument that is missing": """
+with _state_machine:
+    OperatableStateMachine.add("A", Do())  # !
+""",
+    "a parameter that does not exist": """
+with _state_machine:
+    add("A", Do(), {"done": "finished"}, remappings={"part": "bolt"})  # !
+""",
+    "a class in place of a state": """
+with _state_machine:
+    add("A", Make, transitions={"done": "finished"})  # !
+""",
+}
 KINDS = {
     "SM101": TARGET, "SM309": RETURN, "SM104": UNMAPPED, "SM102": OTHER_OUTCOME,
     "SM806": OUTCOME_NAME, "SM106": TWICE, "SM301": UNSET, "SM310": UNDECLARED, "SM308": WRITES,
-    "SM403": CONDITION,
+    "SM403": CONDITION, "SM808": CALL,
 }  # fmt: skip
-"""The ten kinds of faults, by code; `# !` marks the line of each."""
+"""Kinds of faults by code, the first ten as in docs/existing.md; `# !` marks the line of each."""
 OTHER_CODES = {"by another name": "SM302", "its container has it": "SM303"}
 CASES = [(kind, name) for kind, cases in KINDS.items() for name in cases]
 
