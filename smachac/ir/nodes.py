@@ -336,13 +336,15 @@ class Concurrence(_Container):
     container.
 
     `join`: "all" waits for every child, "any" preempts the others when the first child ends. Of
-    several matching rules the one with most conditions applies.
+    several matching rules the one with most conditions applies. "rule", of machines for FlexBE:
+    the first rule in their order that matches what has ended applies at once, and the other
+    children are stopped; there is no default outcome.
     """
 
     keyword: ClassVar[str] = "concurrence"
     default_outcome: str = ""
     rules: tuple[OutcomeRule, ...] = ()
-    join: Literal["all", "any"] = "all"
+    join: Literal["all", "any", "rule"] = "all"
     default_span: Span = field(default=NOWHERE, compare=False, repr=False)
 
 

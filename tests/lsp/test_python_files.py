@@ -88,6 +88,36 @@ def test_findings_as_one_types(client: Client, folder: Path) -> None:
     assert client.findings(uri) == []
 
 
+BEHAVIOR = """from flexbe_core import Behavior, EventState, OperatableStateMachine
+
+
+class Wait(EventState):
+    def __init__(self):
+        super().__init__(outcomes=["done"])
+
+    def execute(self, userdata):
+        pass
+
+
+class TaskSM(Behavior):
+    def create(self):
+        _state_machine = OperatableStateMachine(outcomes=["finished"])
+        with _state_machine:
+            OperatableStateMachine.add("WAIT", Wait(), transitions={"done": "finishd"})
+        return _state_machine
+"""
+
+
+def test_behaviors_of_flexbe(client: Client, folder: Path) -> None:
+    uri = client.open(folder / "task_sm.py", BEHAVIOR)
+    (finding,) = client.findings(uri)
+    assert (finding["code"], finding["severity"]) == ("SM101", 1)
+    assert finding["range"]["start"]["line"] == line_of(BEHAVIOR, "finishd")
+    assert "done" in hover(client, uri, position(BEHAVIOR, "WAIT"))
+    client.change(uri, BEHAVIOR.replace("finishd", "finished"))
+    assert client.findings(uri) == []
+
+
 def test_a_finding_can_be_allowed_by_a_code_action(client: Client, folder: Path) -> None:
     wrong = MACHINE.replace('"heavy": "stopped"', '"heavy": "stoped"')
     uri = client.open(folder / "parcels.py", wrong)

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from smachac.diagnostics.source import Span
+from smachac.pysource.life_cycle import LifeCycle
 from smachac.pysource.machines.heap import Added, Children
 from smachac.pysource.machines.values import (
     NONE,
@@ -21,6 +22,7 @@ from smachac.pysource.machines.values import (
     ListValue,
     TupleValue,
     UseFault,
+    UseKind,
     Value,
     sequence,
 )
@@ -36,17 +38,26 @@ class Framework:
     """A framework for state machines.
 
     `packages` are its top packages, `modules` the names in its modules that the evaluator models, a
-    module that is not listed being the top package that it is in. `methods` are the methods of its
+    module that is not listed being the top package that it is in; `.name` is the module of a name
+    in any package. `methods` are the methods of its
     classes by full name (`smach.StateMachine`), `static` those that need no object, `parameters`
     the parameters of the constructors in their order, where an import needs them, `signatures` the
     parameters of methods by full name, of those that are the same in all versions. `containers` are
     the classes of containers; `adds` are the methods that add states, and a class that overrides
     one of `overridden` changes how they are added or run. `lacking` are modules that have none of
-    the names of another one, each with that one.
+    the names of another one, each with that one. `entries` are the methods of its classes that
+    return a machine which the framework runs. `life_cycle` are the methods of a state that it
+    calls.
 
-    `jumps`: an outcome without a transition leads to the state of this name, if there is one.
+    `same_name_exits`: an outcome without a transition ends the container if that has an outcome of
+    this name. `jumps`: it leads to the state of this name, if there is one. `exits` are the
+    outcomes that each container has: they need no transition, and end the containers around it too.
+    `undeclared_outcomes`: a transition for an outcome that the state does not declare is accepted,
+    and taken if the code returns it. `undeclared_keys`: a remapping of a key that the state does
+    not have is accepted, and has no effect.
     `effects` are the codes of the rules whose errors are faults in this framework too, each with
     the effect in its terms, or an empty text for that of the rule; None: all rules are about it.
+    With those in `works` a machine works all the same: only a check with all rules reports them.
     """
 
     name: str
@@ -60,8 +71,15 @@ class Framework:
     parameters: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     lacking: Mapping[str, str] = field(default_factory=dict)
     signatures: Mapping[str, Signature] = field(default_factory=dict)
+    entries: frozenset[str] = frozenset()
+    life_cycle: LifeCycle = LifeCycle()
+    same_name_exits: bool = True
     jumps: bool = False
+    exits: tuple[str, ...] = ()
+    undeclared_outcomes: bool = False
+    undeclared_keys: bool = False
     effects: Mapping[str, str] | None = None
+    works: frozenset[str] = frozenset()
 
 
 def classes(prefix: str, names: str) -> dict[str, Value]:
@@ -183,3 +201,11 @@ def listed(slot: str) -> Run:
         return UNKNOWN if items is None else evaluator.new_list(items)
 
     return run
+
+
+def refuse(evaluator: Interpreter, kind: UseKind, name: Const, span: Span) -> None:
+    """Notes that a framework refuses a call, at the name in it."""
+    own = name.span
+    is_inside = own is not None and own.source is span.source and span.start <= own.start < span.end
+    fault = UseFault(kind, own if own is not None and is_inside else span, (str(name.value),))
+    evaluator.faults.append(fault)

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from smachac.pysource.machines import python_library
 from smachac.pysource.machines.builtins import MAKERS
+from smachac.pysource.machines.flexbe_library import FLEXBE
 from smachac.pysource.machines.framework import Framework
 from smachac.pysource.machines.smach_library import SMACH
 from smachac.pysource.machines.values import (
@@ -23,7 +24,7 @@ from smachac.pysource.machines.values import (
 from smachac.pysource.machines.wrong_calls import Signature
 from smachac.pysource.machines.yasmin_library import YASMIN
 
-FRAMEWORKS: tuple[Framework, ...] = (SMACH, YASMIN)
+FRAMEWORKS: tuple[Framework, ...] = (SMACH, YASMIN, FLEXBE)
 """The frameworks whose machines are read."""
 
 _OF_PACKAGE = {package: framework for framework in FRAMEWORKS for package in framework.packages}
@@ -90,8 +91,10 @@ def library_module(known: dict[str, ModuleValue], name: str) -> Value | None:
         return known[name]
     if name in python_library.UNREAD:
         return Unknown(reason=name)
-    head = name.partition(".")[0]
-    return known.get(head) if head in _OF_PACKAGE and name.count(".") == 1 else None
+    head, _, last = name.rpartition(".")
+    if head in _OF_PACKAGE:
+        return known.get(head)
+    return known.get(f".{last}") if head else None
 
 
 def misplaced(module: str, name: str) -> tuple[Value, str]:

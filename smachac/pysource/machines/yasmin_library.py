@@ -20,6 +20,7 @@ from smachac.pysource.machines.framework import (
     make_container,
     names_in,
     nothing,
+    refuse,
     set_interface,
     together,
 )
@@ -34,8 +35,6 @@ from smachac.pysource.machines.values import (
     Interpreter,
     Native,
     TupleValue,
-    UseFault,
-    UseKind,
     Value,
     sequence,
 )
@@ -180,7 +179,7 @@ def _add(kind: str) -> Run:
         add_child(evaluator, me, added)
         outcomes = sequence(me.slots.get("$outcomes")) or ()
         if kind == "add" and isinstance(name, Const) and name in outcomes:
-            _refuse(evaluator, "state named as outcome", name, span)
+            refuse(evaluator, "state named as outcome", name, span)
         return NONE
 
     return run
@@ -197,16 +196,8 @@ def _set_start(evaluator: Interpreter, arguments: Arguments, span: Span | None) 
         known = [child.label for child in children.added]
         is_whole = children.complete and all(isinstance(label, Const) for label in known)
         if is_whole and name not in known:
-            _refuse(evaluator, "no such start state", name, span)
+            refuse(evaluator, "no such start state", name, span)
     return NONE
-
-
-def _refuse(evaluator: Interpreter, kind: UseKind, name: Const, span: Span) -> None:
-    """Notes that YASMIN refuses a call, at the name in it."""
-    own = name.span
-    is_inside = own is not None and own.source is span.source and span.start <= own.start < span.end
-    fault = UseFault(kind, own if own is not None and is_inside else span, (str(name.value),))
-    evaluator.faults.append(fault)
 
 
 _STATE: Mapping[str, Run] = {
@@ -292,4 +283,5 @@ YASMIN = Framework(
         "SM309": "YASMIN raises an exception after `execute`: the machine stops",
         "SM403": "YASMIN raises an exception when it makes the concurrence: the program stops",
     },
+    works=frozenset(["SM202"]),  # an endless loop can be wanted
 )  # fmt: skip
