@@ -123,6 +123,19 @@ class Context:
         return tuple((path, node) for path, node in self.states if not isinstance(node, Leaf))
 
     @cached_property
+    def around_any_key(self) -> frozenset[str]:
+        """The paths of the containers around states of YASMIN that can use any key: their remapping
+        is for these states."""
+        types = {name for name, type_ in self.machine.state_types.items() if type_.any_key}
+        found: set[str] = set()
+        for path, node in self.states if types else ():
+            outer = path.rpartition("/")[0] if node.type in types else ""
+            while outer and outer not in found:
+                found.add(outer)
+                outer = outer.rpartition("/")[0]
+        return frozenset(found)
+
+    @cached_property
     def leaves_with_variables(self) -> tuple[tuple[str, Leaf], ...]:
         """The leaves that have variables or input keys, with their paths."""
         return tuple(

@@ -267,7 +267,8 @@ class _State:
 class Leaf(_State):
     """One skill of a state type.
 
-    `open`: the state type has no interface, so its keys and outcomes are unknown. `blocking`: it
+    `open`: the state type has no interface, so its keys and outcomes are unknown; or it is a state
+    of YASMIN that can use any key. `blocking`: it
     waits for the outside world, as its interface declares. `writes` are pairs of an outcome and
     output keys: an output in it is written on those outcomes only, any other output on all outcomes
     except `preempted`. `class_facts` are those of its Python class, if it was read.
@@ -505,6 +506,12 @@ class StateType:
         the class names."""
         known = self.class_facts is not None and self.class_facts.parameters is not None
         return "variables" in self.given or (self.open and not known)
+
+    @property
+    def any_key(self) -> bool:
+        """Whether the states can use any key of a blackboard, as a class of YASMIN can whose
+        interface has `input_keys: {"*": {}}`."""
+        return "yasmin" in self.code and "input_keys" in self.given
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

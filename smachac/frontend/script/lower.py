@@ -199,7 +199,7 @@ def _leaf(state: State) -> Leaf:
         outcomes=tuple(outcomes.values()),
         variables=(*state.variables, *_defaults(state)) if type_.variables else state.variables,
         writes=type_.writes,
-        open=type_.open,
+        open=type_.open or type_.any_key,
         blocking=type_.blocking,
         class_facts=type_.class_facts,
         built_in=type_.built_in,

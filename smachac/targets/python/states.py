@@ -417,6 +417,10 @@ def _leaf(
     )
     callbacks = called.value.data if called is not None else None
     made = call(used.class_name, arguments)
+    wrapper = module.context.wrappers.get(leaf.type)
+    if wrapper is not None:
+        module.additions[wrapper] = None
+        made = call(wrapper, [("", made)])
     add = added.statement(leaf, made, inside, module, callbacks=callbacks)
     return structure.documentation(added.outer.doc, inside.depth + 1) + add
 
