@@ -120,13 +120,13 @@ def import_command(arguments: Namespace) -> int:
         return usage(message, arguments.machine, made.all_names)
     if not made.names:
         print(f"no state machine found in {shown(path)}\nhelp: name the file that builds"
-              " `smach.StateMachine`", file=sys.stderr)  # fmt: skip
+              " `smach.StateMachine`, or one of YASMIN", file=sys.stderr)  # fmt: skip
         return FINDINGS
     for machine in made.incomplete:
         why = "parts of it are not known"
         help = "add states to it" if is_xml else KNOWN
         if machine.framework:
-            why = f"machines for {machine.framework} are not imported"
+            why = f"no script can have what {machine.framework} has here"
             help = "`smachac check` and `smachac view` read it; a script has to be written by hand"
         print(f"error: `{machine.name}` was not imported: {why}", file=sys.stderr)
         for span, reason in machine.unknown:

@@ -22,7 +22,9 @@ from smachac.ir.nodes import Concurrence, Data, Expression, Leaf, Node, Struct
 from smachac.ir.nodes import Iterator as IteratorNode
 from smachac.ir.python_code import parse_code
 from smachac.ir.traversal import outcome_names, written_children
+from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import BudgetError, Evaluator
+from smachac.pysource.machines.framework import noted_of, userdata_of
 from smachac.pysource.machines.graph import Graph
 from smachac.pysource.machines.libraries import parameters_of
 from smachac.pysource.machines.origins import Origins
@@ -48,6 +50,9 @@ from smachac.pysource.machines.values import (
 from smachac.pysource.source import PythonText
 from smachac.pysource.syntax_tree import walk_code
 from smachac.records import dataclass, field
+
+_FUNCTIONS = ("cb", "callback", "handler")
+"""How the names of parameters end that take a function."""
 
 MOST_COMBINATIONS = 256
 """The most combinations of outcomes for which a callback of a concurrence is evaluated."""
@@ -87,7 +92,8 @@ class Construction:
     a name for the state type. `types` are the types of ROS in the arguments, by the parameter:
     `std_srvs/SetBool`. `file` has the class, `cls_span` is its place, `doc` the first line of its
     docstring. `node`: the first argument was the node of ROS 2. `parameters` are the values for a
-    class that is to be written, where there is an `obstacle`."""
+    class that is to be written, where there is an `obstacle`. `code` is the key of the class in the
+    `code` of an interface. `refusal`: why no script can have such a state."""
 
     span: Span
     cls: ClassPlace | None = None
@@ -100,6 +106,8 @@ class Construction:
     file: str = ""
     doc: str = ""
     node: bool = False
+    code: str = "python"
+    refusal: str = ""
     cls_span: Span | None = field(default=None, compare=False)
 
 
@@ -122,20 +130,22 @@ class Callbacks:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Constructions:
     """The constructions of the states of a machine, the values that their userdata has first, the
-    items of iterators, and the callbacks of concurrences, each by the path of names. `registered`
-    are the calls that register other functions of containers, by their names, `shared` the paths of
+    items of iterators, and the callbacks of concurrences, each by the path of names. `noted` are
+    the calls that have an effect which is no part of a graph, by their names, `shared` the paths of
     states that are one object with the state of an earlier path, and their places. `modules` are
     those that the classes and the code need, each with the folder in which Python has to search
-    it. `ros` is the version of ROS that the code imports; 0: none."""
+    it. `ros` is the version of ROS that the code imports; 0: none. `one_rule`: a concurrence of
+    which two rules hold stops with an exception."""
 
     states: Mapping[Names, Construction]
     userdata: Mapping[Names, tuple[Argument, ...]]
     items: Mapping[Names, Argument]
     callbacks: Mapping[Names, Callbacks]
-    registered: tuple[tuple[str, Span], ...]
+    noted: tuple[tuple[str, Span], ...]
     shared: tuple[tuple[Names, Names, Span], ...]
     modules: Mapping[str, str]
     ros: int = 0
+    one_rule: bool = False
 
 
 def constructions(graph: Graph, evaluator: Evaluator, repository: Repository) -> Constructions:
@@ -157,21 +167,22 @@ class _Reader:
         userdata: dict[Names, tuple[Argument, ...]] = {}
         items: dict[Names, Argument] = {}
         callbacks: dict[Names, Callbacks] = {}
-        registered: list[tuple[str, Span]] = []
+        noted: list[tuple[str, Span]] = []
         for names, node in with_names(self.graph.machine.root):
             self.names = names
             made = self.graph.objects.get(names)
             around = self._class_around(names[:-1])
             if isinstance(node, Leaf):
                 if not node.synthetic:
-                    states[names] = self._state(made, node.span, around)
+                    states[names] = self._of_framework(made, self._state(made, node.span, around))
+                    noted += self._noted_outside(made, node.span)
                 continue
             if made is None:
                 continue
             if isinstance(made.cls, Class):
-                states[names] = self._state(made, node.span, around)
+                states[names] = self._of_framework(made, self._state(made, node.span, around))
             inside = made if isinstance(made.cls, Class) else around
-            registered += _registered(made, node.span)
+            noted += _noted(made, node.span)
             userdata[names] = tuple(self._userdata(made, inside))
             if isinstance(node, IteratorNode):
                 items[names] = self._items(made, inside, node.items_span)
@@ -179,9 +190,28 @@ class _Reader:
                 callbacks[names] = self._callbacks(node, made)
         return Constructions(
             states=states, userdata=userdata, items=items, callbacks=callbacks,
-            registered=tuple(dict.fromkeys(registered)), shared=tuple(self._shared()),
+            noted=tuple(dict.fromkeys(noted)), shared=tuple(self._shared()),
             modules=dict(sorted(self.modules.items())), ros=self._ros(states),
+            one_rule=self.graph.framework.one_rule,
         )  # fmt: skip
+
+    def _of_framework(self, made: Instance | None, found: Construction) -> Construction:
+        """A construction with what the framework of the machine states of its class."""
+        framework = self.graph.framework
+        classes = self.evaluator.classes(made.cls) if made is not None else []
+        refusals = (framework.parts.get(getattr(cls, "name", "")) for cls in classes)
+        refusal = next((text for text in refusals if text is not None), "")
+        return replace(found, code=framework.code, refusal=refusal)
+
+    def _noted_outside(self, made: Instance | None, span: Span) -> Iterator[tuple[str, Span]]:
+        """The calls that are noted for a state, without those in the code of its class, which the
+        programs call too."""
+        classes = self.evaluator.classes(made.cls) if made is not None else []
+        own = [place for cls in classes if isinstance(cls, Class)
+               if (place := self.evaluator.span(cls.node, cls.frame)) is not None]  # fmt: skip
+        for name, place in _noted(made, span) if made is not None else ():
+            if not any(contains(outer, place) for outer in own):
+                yield name, place
 
     def _shared(self) -> Iterator[tuple[Names, Names, Span]]:
         """The states that are one object, without those in a container that is."""
@@ -228,11 +258,11 @@ class _Reader:
         named = {argument.name: argument for argument in found}
         if "node" in named:
             found = tuple(argument for argument in found if argument.name != "node")
-        callback = next((argument for argument in found if argument.name.endswith("cb")
+        callback = next((argument for argument in found if argument.name.endswith(_FUNCTIONS)
                          and not argument.is_known), None)  # fmt: skip
         obstacle = "" if callback is None else _no_import(callback.text)
         return Construction(
-            span=span, library=made.cls.name, short=_short(named.get("cb"), made.cls.short),
+            span=span, library=made.cls.name, short=_short(named.get("cb") or named.get("callback"), made.cls.short),
             arguments=found, obstacle=obstacle, types=self._types(made), node="node" in named,
         )  # fmt: skip
 
@@ -455,7 +485,7 @@ class _Reader:
 
     def _userdata(self, made: Instance, around: Instance | None) -> Iterator[Argument]:
         """The userdata that a container has before it starts."""
-        value = made.slots.get("userdata")
+        value = userdata_of(made)
         pairs = value.items if isinstance(value, DictValue) else {}
         place = made.span or self.graph.machine.root.span
         for key, part in pairs.values() if isinstance(pairs, Mapping) else ():
@@ -699,10 +729,9 @@ def _short(callback: Argument | None, cls: str) -> str:
     return "".join(part[:1].upper() + part[1:] for part in name.split("_")) or cls
 
 
-def _registered(made: Instance, span: Span) -> list[tuple[str, Span]]:
-    """The calls that register functions of a container."""
-    found = sequence(made.slots.get("$callbacks")) or ()
-    return [(str(part.value), part.span or span) for part in found if isinstance(part, Const)]
+def _noted(made: Instance, span: Span) -> list[tuple[str, Span]]:
+    """The calls with an effect that is no part of a graph, by their names."""
+    return [(str(call.value), call.span or span) for call in noted_of(made)]
 
 
 def _is_nothing(value: Value | None) -> bool:

@@ -21,6 +21,7 @@ from smachac.pysource.machines.values import (
     TupleValue,
     UseFault,
     Value,
+    alternatives,
     sequence,
 )
 from smachac.records import dataclass, field
@@ -43,6 +44,10 @@ class Framework:
     `jumps`: an outcome without a transition leads to the state of this name, if there is one.
     `effects` are the codes of the rules whose errors are faults in this framework too, each with
     the effect in its terms, or an empty text for that of the rule; None: all rules are about it.
+
+    For the import: `code` is the key of its classes in the `code` of interfaces, empty if no script
+    can have them. `parts` are classes that only work in another one, each with the reason.
+    `one_rule`: a concurrence of which two rules hold stops with an exception.
     """
 
     name: str
@@ -56,6 +61,9 @@ class Framework:
     parameters: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     jumps: bool = False
     effects: Mapping[str, str] | None = None
+    code: str = ""
+    parts: Mapping[str, str] = field(default_factory=dict)
+    one_rule: bool = False
 
 
 def classes(prefix: str, names: str) -> dict[str, Value]:
@@ -152,6 +160,33 @@ def executed(evaluator: Interpreter, arguments: Arguments, span: Span | None) ->
         if len(arguments.positional) + len(arguments.named) > 1:
             evaluator.heap.set(me.slots, "$exposed", Const(True))
     return UNKNOWN
+
+
+def noted(name: str) -> Run:
+    """A method whose call has an effect that is no part of a graph: an import lists it."""
+
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        me = arguments.get(0, "self")
+        if isinstance(me, Instance):
+            evaluator.heap.set(me.slots, "$noted", TupleValue((*noted_of(me), Const(name, span))))
+        return NONE
+
+    return run
+
+
+def noted_of(me: Instance) -> list[Const]:
+    """The calls that are noted for an object: their names, at their places."""
+    found = [part.items for part in alternatives(me.slots.get("$noted", TupleValue(())))
+             if isinstance(part, TupleValue)]  # fmt: skip
+    calls = {(item.value, item.span): item for items in found for item in items
+             if isinstance(item, Const)}  # fmt: skip
+    return [*calls.values()]
+
+
+def userdata_of(container: Instance) -> Value | None:
+    """The values that the keys of a container have before it starts."""
+    found: Value | None = container.slots.get("$blackboard", container.slots.get("userdata"))
+    return found
 
 
 def listed(slot: str) -> Run:

@@ -37,7 +37,7 @@ from smachac.ir.nodes import (
 from smachac.ir.traversal import outer_inputs
 from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import Evaluator
-from smachac.pysource.machines.framework import Framework
+from smachac.pysource.machines.framework import Framework, userdata_of
 from smachac.pysource.machines.heap import Added, Children
 from smachac.pysource.machines.libraries import framework_of
 from smachac.pysource.machines.proven_reads import doubtful_in
@@ -172,7 +172,7 @@ class _Builder:
         children = made.slots.get("$children")
         added = children.added if isinstance(children, Children) else ()
         complete = isinstance(children, Children) and children.complete and self.roots.complete
-        userdata = made.slots.get("userdata")
+        userdata = userdata_of(made)
         known = isinstance(userdata, DictValue) and isinstance(userdata.items, Mapping)
         self.nodes += len(added)
         inside = made in self.path or depth > MOST_LEVELS or self.nodes > MOST_NODES
@@ -207,7 +207,7 @@ class _Builder:
             "outcomes": tuple(Outcome(name=text, span=place) for text, place in known),
             "inputs": self.keys(made.slots.get("$inputs"), span, required=True),
             "outputs": self.keys(made.slots.get("$outputs"), span, required=True),
-            "userdata": tuple(_presets(made.slots.get("userdata"), span)),
+            "userdata": tuple(_presets(userdata_of(made), span)),
             "span": span,
         }
         initial = builder.initial(added)

@@ -19,6 +19,7 @@ from smachac.pysource.machines.framework import (
     listed,
     make_container,
     names_in,
+    noted,
     nothing,
     set_interface,
     together,
@@ -60,6 +61,26 @@ _READY: Mapping[str, tuple[int, tuple[str, ...], tuple[str, ...]]] = {
 }
 """The states of yasmin_ros: the place of the argument `outcomes` (0: they have none), the outcomes
 that each has besides, and those that it can have."""
+
+
+_PARAMETERS = {
+    name: tuple(words.split())
+    for name, words in {
+        "yasmin.State": "outcomes",
+        "yasmin.CbState": "outcomes callback",
+        "yasmin_ros.ActionState": "action_type action_name create_goal_handler outcomes"
+        " result_handler feedback_handler callback_group node wait_timeout response_timeout"
+        " maximum_retry",
+        "yasmin_ros.ServiceState": "srv_type srv_name create_request_handler outcomes"
+        " response_handler callback_group node wait_timeout response_timeout maximum_retry",
+        "yasmin_ros.MonitorState": "msg_type topic_name outcomes monitor_handler qos"
+        " callback_group msg_queue node timeout maximum_retry",
+        "yasmin_ros.PublisherState": "msg_type topic_name create_message_handler qos"
+        " callback_group node",
+        "yasmin_ros.GetParametersState": "parameters node",
+    }.items()
+}
+"""The parameters of the constructors in YASMIN 6.1."""
 
 
 def _names(texts: tuple[str, ...]) -> Value:
@@ -208,23 +229,55 @@ def _refuse(evaluator: Interpreter, kind: UseKind, name: Const, span: Span) -> N
     evaluator.faults.append(fault)
 
 
+def _blackboard(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    """A blackboard: a dictionary; a copy of another one has the same values."""
+    other = arguments.get(0, "other")
+    return DictValue({"items": {}}, span) if other is None else other
+
+
+def _execute(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    """Runs a state. The userdata of a machine is what its blackboard holds then."""
+    me, blackboard = arguments.get(0, "self"), arguments.get(1, "blackboard", NONE)
+    if isinstance(me, Instance) and "$children" in me.slots and blackboard != NONE:
+        items = blackboard.items if isinstance(blackboard, DictValue) else None
+        if isinstance(items, Mapping) and "$executed" not in me.slots:
+            evaluator.heap.set(me.slots, "$blackboard", DictValue({"items": items}))
+        else:
+            noted(BLACKBOARD)(evaluator, arguments, span)
+    if isinstance(blackboard, DictValue):  # the states have changed it
+        evaluator.heap.set(blackboard.slots, "items", UNKNOWN)
+    return executed(evaluator, Arguments((me,) if me is not None else ()), span)
+
+
+def _add_input_key(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    """`add_input_key`, which describes a key, and can give it a value."""
+    if arguments.get(3, "default_value") is not None:
+        return noted("add_input_key")(evaluator, arguments, span)
+    return NONE
+
+
+BLACKBOARD = "Blackboard"
+"""The name under which a blackboard is noted of which the values are not known."""
+
 _STATE: Mapping[str, Run] = {
     "__init__": _state,
-    "__call__": executed,
-    "execute": executed,
+    "__call__": _execute,
+    "execute": _execute,
     "get_outcomes": listed("$outcomes"),
+    "add_input_key": _add_input_key,
+    **{name: noted(name) for name in ("declare_parameter", "set_parameter")},
     **dict.fromkeys(
         ("configure", "cancel_state", "set_description", "set_outcome_description",
-         "add_input_key", "add_output_key", "declare_parameter", "set_parameter"), nothing,
+         "add_output_key"), nothing,
     ),
 }  # fmt: skip
 
 _CONTAINER: Mapping[str, Run] = {
     **_STATE,
-    **dict.fromkeys(
-        ("validate", "set_name", "add_start_cb", "add_transition_cb", "add_end_cb",
-         "set_parameter_mappings", "set_sigint_handler", "cancel_state_machine"), nothing,
-    ),
+    **{name: noted(name) for name in
+       ("add_start_cb", "add_transition_cb", "add_end_cb", "set_parameter_mappings")},
+    **dict.fromkeys(("validate", "set_name", "set_sigint_handler", "cancel_state_machine"),
+                    nothing),
 }  # fmt: skip
 
 _LOGS = (
@@ -243,7 +296,7 @@ YASMIN = Framework(
     modules={
         "yasmin": {
             **classes("yasmin", "State CbState StateMachine Concurrence OrthogonalState JoinState"),
-            "Blackboard": Native("Blackboard", _unknown),
+            "Blackboard": Native("Blackboard", _blackboard),
             **dict.fromkeys(_LOGS.split(), Native("nothing", nothing)),
         },
         "yasmin_ros": {
@@ -275,7 +328,11 @@ YASMIN = Framework(
     containers=frozenset(["yasmin.StateMachine", "yasmin.Concurrence", "yasmin.OrthogonalState"]),
     adds=frozenset(["add_state", "add_region"]),
     overridden=frozenset(["add_state", "add_region", "execute"]),
+    parameters=_PARAMETERS,
     jumps=True,
+    code="yasmin",
+    parts={"yasmin.JoinState": "it waits for another region of an orthogonal state"},
+    one_rule=True,
     effects={
         "SM101": "YASMIN raises an exception when the machine starts: none of its states runs",
         "SM102": "`add_state` raises an exception for such a transition: the program stops",

@@ -59,6 +59,13 @@ OUTCOMES = {
 _USABLE = frozenset(["robot", "timeout", "retry", "for_each"])
 """Fields whose names a state type can give to its variables."""
 
+_LANGUAGES = {
+    "python": ("smach.State", "userdata"),
+    "yasmin": ("yasmin.State", "blackboard"),
+}
+"""The base class of the classes that an import writes, and the argument of their `execute`, by the
+key of the `code` of interfaces."""
+
 RESERVED = frozenset({*schema.VARIABLES, *schema.LONG, "callbacks", "cb"}) - _USABLE
 """Words that no variable of a state type has as its name: fields of scripts."""
 
@@ -137,7 +144,7 @@ class StateTypes:
         fixed, variables, passed = _split(construction, leaf, wrapped=wrapped)
         obstacle = construction.obstacle
         which = (
-            construction.cls, construction.library, construction.file, fixed,
+            construction.cls, construction.library, construction.file, construction.code, fixed,
             tuple(passed) if wrapped else (),
             obstacle and construction.short, obstacle, leaf.open, outcome_names(leaf),
             tuple((key.name, is_optional(key)) for key in leaf.inputs),
@@ -199,15 +206,19 @@ def _split(
     passed: dict[str, str] = {}
     for at, argument in enumerate(construction.arguments, 1):
         name = argument.name
-        if construction.library and name in _INTERFACE:
+        is_smach = construction.code == "python"
+        if construction.library and name in _INTERFACE and is_smach:
             continue
         if wrapped and name and isinstance(argument.data, Expression):
             fixed.append(f"{name}={argument.data.text}")
             continue
+        if construction.library and name in _INTERFACE and isinstance(argument.data, tuple):
+            fixed.append(f"{name}={[*argument.data]!r}")
+            continue
         variable = _variable(name) if name else f"argument_{at}"
         variables[variable] = argument
         passed[variable] = name
-    if construction.library:
+    if construction.library and construction.code == "python":
         fixed.append(f"outcomes={[*outcome_names(leaf)]!r}")
         fixed += [f"{name}={[key.name for key in keys]!r}" for name, keys in
                   (("input_keys", leaf.inputs), ("output_keys", leaf.outputs)) if keys]  # fmt: skip
@@ -235,10 +246,11 @@ def _interface(made: ImportedType) -> str:
     for word, keys in (("input_keys", leaf.inputs), ("output_keys", leaf.outputs)):
         if keys:
             lines.append(f"{word}: {keys_text(keys)}")
-        elif leaf.open:
+        elif leaf.open or made.construction.code == "yasmin":  # one blackboard has all keys
             lines.append(f'{word}: {{"*": {{}}}}')
     lines.append(f"outcomes: {mapping_text(dict.fromkeys(outcome_names(leaf), '{}'))}")
-    lines.append(f"code: {{python: {quoted(made.code or f'{OWN_MODULE}:{made.name}')}}}")
+    code = made.code or f"{OWN_MODULE}:{made.name}"
+    lines.append(f"code: {{{made.construction.code}: {quoted(code)}}}")
     return "\n".join(lines) + "\n"
 
 
@@ -253,6 +265,9 @@ def _module(types: Iterable[ImportedType]) -> str:
                       if made.construction.cls is not None and not made.construction.obstacle}
                      | _modules_in(types))  # fmt: skip
     lines = ['"""Classes for the states of the scripts in this folder."""']
+    plain = [name for name in ("yasmin", "yasmin_ros") if f"({name}." in text]
+    if plain:
+        lines += ["", *(f"import {name}" for name in plain)]
     if libraries:
         lines += [
             "", "try:", *(f"    import {name}" for name in libraries),
@@ -271,7 +286,7 @@ def _modules_in(types: Iterable[ImportedType]) -> set[str]:
 
 
 def _wrapper(made: ImportedType) -> list[str]:
-    """A class that passes arguments to that of the user or of SMACH."""
+    """A class that passes arguments to that of the user or of the framework."""
     cls = made.construction.cls
     base = f"{cls.module}.{cls.name}" if cls is not None else made.construction.library
     given = [f"{name}={variable}" if name else variable for variable, name in made.passed.items()]
@@ -298,11 +313,12 @@ def _stub(made: ImportedType) -> list[str]:
     parameters = "".join(f", {name}" if count == made.states else f", {name}=None"
                          for name, count in counts)  # fmt: skip
     why = re.sub(r'[\\"]', "'", f"{made.place}: {made.construction.obstacle}.")
+    base, argument = _LANGUAGES[made.construction.code]
     return [
-        f"class {made.name}(smach.State):", f'    """{why}"""', "",
+        f"class {made.name}({base}):", f'    """{why}"""', "",
         f"    def __init__(self{parameters}):", "        super().__init__(", *given, "        )",
         *(f"        self.{name} = {name}" for name in made.variables), "",
-        "    def execute(self, userdata):",
+        f"    def execute(self, {argument}):",
         f"        raise NotImplementedError({made.place!r})",
     ]  # fmt: skip
 
