@@ -24,7 +24,7 @@ from smachac.ir.python_code import parse_code
 from smachac.ir.traversal import outcome_names, written_children
 from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import BudgetError, Evaluator
-from smachac.pysource.machines.framework import noted_of, userdata_of
+from smachac.pysource.machines.framework import Call, noted_of, userdata_of
 from smachac.pysource.machines.graph import Graph
 from smachac.pysource.machines.libraries import parameters_of
 from smachac.pysource.machines.origins import Origins
@@ -93,7 +93,8 @@ class Construction:
     `std_srvs/SetBool`. `file` has the class, `cls_span` is its place, `doc` the first line of its
     docstring. `node`: the first argument was the node of ROS 2. `parameters` are the values for a
     class that is to be written, where there is an `obstacle`. `code` is the key of the class in the
-    `code` of an interface. `refusal`: why no script can have such a state."""
+    `code` of an interface. `calls` is the code of calls that change the state before it runs.
+    `refusal`: why no script can have such a state."""
 
     span: Span
     cls: ClassPlace | None = None
@@ -107,6 +108,7 @@ class Construction:
     doc: str = ""
     node: bool = False
     code: str = "python"
+    calls: tuple[str, ...] = ()
     refusal: str = ""
     cls_span: Span | None = field(default=None, compare=False)
 
@@ -174,15 +176,22 @@ class _Reader:
             around = self._class_around(names[:-1])
             if isinstance(node, Leaf):
                 if not node.synthetic:
-                    states[names] = self._of_framework(made, self._state(made, node.span, around))
-                    noted += self._noted_outside(made, node.span)
+                    state = self._of_framework(made, self._state(made, node.span, around))
+                    calls = [(call, _call_code(call)) for call in self._calls(made)]
+                    written = [] if state.obstacle else [code for _, code in calls if code]
+                    states[names] = replace(state, calls=tuple(written))
+                    noted += [(call.name, call.span or node.span) for call, code in calls
+                              if code not in written]  # fmt: skip
                 continue
             if made is None:
                 continue
             if isinstance(made.cls, Class):
                 states[names] = self._of_framework(made, self._state(made, node.span, around))
             inside = made if isinstance(made.cls, Class) else around
-            noted += _noted(made, node.span)
+            noted += [(call.name, call.span or node.span) for call in noted_of(made)]
+            defaults = made.slots.get("$defaults")
+            if defaults is not None and "$blackboard" not in made.slots:
+                noted.append(("add_input_key", getattr(defaults, "span", None) or node.span))
             userdata[names] = tuple(self._userdata(made, inside))
             if isinstance(node, IteratorNode):
                 items[names] = self._items(made, inside, node.items_span)
@@ -203,15 +212,17 @@ class _Reader:
         refusal = next((text for text in refusals if text is not None), "")
         return replace(found, code=framework.code, refusal=refusal)
 
-    def _noted_outside(self, made: Instance | None, span: Span) -> Iterator[tuple[str, Span]]:
+    def _calls(self, made: Instance | None) -> list[Call]:
         """The calls that are noted for a state, without those in the code of its class, which the
-        programs call too."""
-        classes = self.evaluator.classes(made.cls) if made is not None else []
-        own = [place for cls in classes if isinstance(cls, Class)
-               if (place := self.evaluator.span(cls.node, cls.frame)) is not None]  # fmt: skip
-        for name, place in _noted(made, span) if made is not None else ():
-            if not any(contains(outer, place) for outer in own):
-                yield name, place
+        programs make too."""
+        if made is None:
+            return []
+        own = [self.evaluator.span(cls.node, cls.frame)
+               for cls in self.evaluator.classes(made.cls) if isinstance(cls, Class)]  # fmt: skip
+        return [
+            call for call in noted_of(made)
+            if call.span is None or not any(contains(outer, call.span) for outer in own if outer)
+        ]  # fmt: skip
 
     def _shared(self) -> Iterator[tuple[Names, Names, Span]]:
         """The states that are one object, without those in a container that is."""
@@ -729,9 +740,14 @@ def _short(callback: Argument | None, cls: str) -> str:
     return "".join(part[:1].upper() + part[1:] for part in name.split("_")) or cls
 
 
-def _noted(made: Instance, span: Span) -> list[tuple[str, Span]]:
-    """The calls with an effect that is no part of a graph, by their names."""
-    return [(str(call.value), call.span or span) for call in noted_of(made)]
+def _call_code(call: Call) -> str | None:
+    """The code of a call with known arguments; None for another one."""
+    parts = [_literal_code(value) for value in call.arguments.positional]
+    named = [(name, _literal_code(value)) for name, value in call.arguments.named]
+    texts = [*parts, *(text and f"{name}={text}" for name, text in named)]
+    known = [text for text in texts if text is not None]
+    is_known = len(known) == len(texts) and not call.arguments.open
+    return f"{call.name}({', '.join(known)})" if is_known else None
 
 
 def _is_nothing(value: Value | None) -> bool:

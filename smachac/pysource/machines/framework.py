@@ -5,6 +5,7 @@ classes have in common.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import NamedTuple
 
 from smachac.diagnostics.source import Span
 from smachac.pysource.machines.heap import Added, Children
@@ -23,6 +24,7 @@ from smachac.pysource.machines.values import (
     Value,
     alternatives,
     sequence,
+    truth,
 )
 from smachac.records import dataclass, field
 
@@ -162,25 +164,52 @@ def executed(evaluator: Interpreter, arguments: Arguments, span: Span | None) ->
     return UNKNOWN
 
 
+class Call(NamedTuple):
+    """A call of a method of an object: its arguments are without the object. They are open if the
+    call is not certain."""
+
+    name: str
+    arguments: Arguments
+    span: Span | None
+
+
 def noted(name: str) -> Run:
-    """A method whose call has an effect that is no part of a graph: an import lists it."""
+    """A method whose call has an effect that is no part of a graph."""
 
     def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
         me = arguments.get(0, "self")
         if isinstance(me, Instance):
-            evaluator.heap.set(me.slots, "$noted", TupleValue((*noted_of(me), Const(name, span))))
+            given = Arguments(arguments.positional[1:], arguments.named, arguments.open)
+            calls = map(_as_value, (*noted_of(me), Call(name, given, span)))
+            evaluator.heap.set(me.slots, "$noted", TupleValue(tuple(calls)))
         return NONE
 
     return run
 
 
-def noted_of(me: Instance) -> list[Const]:
-    """The calls that are noted for an object: their names, at their places."""
-    found = [part.items for part in alternatives(me.slots.get("$noted", TupleValue(())))
-             if isinstance(part, TupleValue)]  # fmt: skip
-    calls = {(item.value, item.span): item for items in found for item in items
-             if isinstance(item, Const)}  # fmt: skip
-    return [*calls.values()]
+def noted_of(me: Instance) -> list[Call]:
+    """The calls that are noted for an object."""
+    held = alternatives(me.slots.get("$noted", TupleValue(())))
+    found = dict.fromkeys(call for calls in held for call in sequence(calls) or ())
+    return [_as_call(call, certain=len(held) == 1) for call in found]
+
+
+def _as_value(call: Call) -> Value:
+    """A call as a value, which the store can join with others."""
+    name, arguments, span = call
+    words = TupleValue(tuple(Const(word) for word, _ in arguments.named))
+    values = TupleValue(tuple(value for _, value in arguments.named))
+    given = TupleValue(arguments.positional)
+    return TupleValue((Const(name, span), given, words, values, Const(arguments.open)))
+
+
+def _as_call(value: Value, *, certain: bool) -> Call:
+    name, given, words, values, is_open = sequence(value) or ()
+    pairs = zip(sequence(words) or (), sequence(values) or (), strict=True)
+    named = tuple((str(getattr(word, "value", "")), part) for word, part in pairs)
+    is_open = Const(not certain or truth(is_open) is True)
+    arguments = Arguments(sequence(given) or (), named, truth(is_open) is True)
+    return Call(str(getattr(name, "value", "")), arguments, getattr(name, "span", None))
 
 
 def userdata_of(container: Instance) -> Value | None:

@@ -235,24 +235,43 @@ def _blackboard(evaluator: Interpreter, arguments: Arguments, span: Span | None)
     return DictValue({"items": {}}, span) if other is None else other
 
 
-def _execute(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    """Runs a state. The userdata of a machine is what its blackboard holds then."""
-    me, blackboard = arguments.get(0, "self"), arguments.get(1, "blackboard", NONE)
-    if isinstance(me, Instance) and "$children" in me.slots and blackboard != NONE:
-        items = blackboard.items if isinstance(blackboard, DictValue) else None
-        if isinstance(items, Mapping) and "$executed" not in me.slots:
-            evaluator.heap.set(me.slots, "$blackboard", DictValue({"items": items}))
-        else:
-            noted(BLACKBOARD)(evaluator, arguments, span)
-    if isinstance(blackboard, DictValue):  # the states have changed it
-        evaluator.heap.set(blackboard.slots, "items", UNKNOWN)
-    return executed(evaluator, Arguments((me,) if me is not None else ()), span)
+def _run(*, injects: bool) -> Run:
+    """A method that runs a state. The userdata of a machine is what its blackboard holds then, with
+    the default values of its keys if it `injects` them."""
+
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        me, blackboard = arguments.get(0, "self"), arguments.get(1, "blackboard", NONE)
+        if isinstance(me, Instance) and "$children" in me.slots:
+            values = blackboard.items if isinstance(blackboard, DictValue) else {}
+            defaults = me.slots.get("$defaults") if injects else None
+            more = defaults.items if isinstance(defaults, DictValue) else {}
+            is_known = isinstance(values, Mapping) and isinstance(more, Mapping)
+            if (blackboard != NONE and not isinstance(blackboard, DictValue)) or not is_known:
+                noted(BLACKBOARD)(evaluator, arguments, span)
+            elif "$executed" in me.slots:
+                noted(BLACKBOARD)(evaluator, arguments, span)
+            elif values or more:
+                whole = DictValue({"items": {**more, **values}})
+                evaluator.heap.set(me.slots, "$blackboard", whole)
+        if isinstance(blackboard, DictValue):  # the states have changed it
+            evaluator.heap.set(blackboard.slots, "items", UNKNOWN)
+        return executed(evaluator, Arguments((me,) if me is not None else ()), span)
+
+    return run
 
 
 def _add_input_key(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    """`add_input_key`, which describes a key, and can give it a value."""
-    if arguments.get(3, "default_value") is not None:
+    """`add_input_key`, which describes a key, and can give it a default value."""
+    me, key = arguments.get(0, "self"), arguments.get(1, "key_name", UNKNOWN)
+    default = arguments.get(3, "default_value")
+    if not isinstance(me, Instance) or default is None:
+        return NONE
+    if "$children" not in me.slots or not isinstance(key, Const):
         return noted("add_input_key")(evaluator, arguments, span)
+    known = me.slots.get("$defaults")
+    pairs = known.items if isinstance(known, DictValue) else {}
+    items = {**pairs, key.value: (key, default)} if isinstance(pairs, Mapping) else UNKNOWN
+    evaluator.heap.set(me.slots, "$defaults", DictValue({"items": items}, span))
     return NONE
 
 
@@ -261,8 +280,8 @@ BLACKBOARD = "Blackboard"
 
 _STATE: Mapping[str, Run] = {
     "__init__": _state,
-    "__call__": _execute,
-    "execute": _execute,
+    "__call__": _run(injects=True),
+    "execute": _run(injects=False),
     "get_outcomes": listed("$outcomes"),
     "add_input_key": _add_input_key,
     **{name: noted(name) for name in ("declare_parameter", "set_parameter")},

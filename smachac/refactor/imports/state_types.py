@@ -145,6 +145,7 @@ class StateTypes:
         obstacle = construction.obstacle
         which = (
             construction.cls, construction.library, construction.file, construction.code, fixed,
+            construction.calls,
             tuple(passed) if wrapped else (),
             obstacle and construction.short, obstacle, leaf.open, outcome_names(leaf),
             tuple((key.name, is_optional(key)) for key in leaf.inputs),
@@ -185,10 +186,10 @@ class StateTypes:
 
 def _is_wrapped(construction: Construction) -> bool:
     """Whether the import writes a class for a state: there is none to name, an argument has only a
-    place, or a parameter is a word that a script has for itself."""
+    place, a parameter is a word that a script has for itself, or calls follow the constructor."""
     return (
         construction.cls is None
-        or bool(construction.obstacle)
+        or bool(construction.obstacle or construction.calls)
         or any(argument.name in {"", *RESERVED} for argument in construction.arguments)
     )
 
@@ -294,10 +295,11 @@ def _wrapper(made: ImportedType) -> list[str]:
     parameters = "".join(f", {name}" for name in made.passed)
     lines = [f"class {made.name}({base}):", f'    """{made.place}"""', "",
              f"    def __init__(self{parameters}):"]  # fmt: skip
+    calls = [f"        self.{call}" for call in made.construction.calls]
     if sum(map(len, given)) < 60:
-        return [*lines, f"        super().__init__({', '.join(given)})"]
+        return [*lines, f"        super().__init__({', '.join(given)})", *calls]
     return [*lines, "        super().__init__(", *(f"            {part}," for part in given),
-            "        )"]  # fmt: skip
+            "        )", *calls]  # fmt: skip
 
 
 def _stub(made: ImportedType) -> list[str]:
