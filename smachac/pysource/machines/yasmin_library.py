@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from smachac.diagnostics.source import Span
+from smachac.pysource.machines import yasmin_runtime
 from smachac.pysource.machines.framework import (
     Framework,
     Run,
@@ -311,7 +312,7 @@ def _unknown(evaluator: Interpreter, arguments: Arguments, span: Span | None) ->
 
 YASMIN = Framework(
     name="YASMIN",
-    packages=("yasmin", "yasmin_ros", "yasmin_viewer"),
+    packages=("yasmin", "yasmin_ros", "yasmin_viewer", yasmin_runtime.NAME),
     modules={
         "yasmin": {
             **classes("yasmin", "State CbState StateMachine Concurrence OrthogonalState JoinState"),
@@ -324,6 +325,7 @@ YASMIN = Framework(
         },
         "yasmin_ros.basic_outcomes": {name: Const(text) for name, text in OUTCOMES.items()},
         "yasmin_viewer": {"YasminViewerPub": Native("YasminViewerPub", _unknown)},
+        yasmin_runtime.NAME: yasmin_runtime.MODULE,
     },
     methods={
         "yasmin.State": _STATE,
@@ -343,8 +345,11 @@ YASMIN = Framework(
         },
         **{f"yasmin_ros.{name}": {**_STATE, "__init__": _ready(*what)}
            for name, what in _READY.items()},
+        **yasmin_runtime.METHODS,
     },
-    containers=frozenset(["yasmin.StateMachine", "yasmin.Concurrence", "yasmin.OrthogonalState"]),
+    containers=yasmin_runtime.CONTAINERS.union(
+        ["yasmin.StateMachine", "yasmin.Concurrence", "yasmin.OrthogonalState"]
+    ),
     adds=frozenset(["add_state", "add_region"]),
     overridden=frozenset(["add_state", "add_region", "execute"]),
     parameters=_PARAMETERS,
