@@ -126,10 +126,9 @@ class Context:
     def around_any_key(self) -> frozenset[str]:
         """The paths of the containers around states of YASMIN that can use any key: their remapping
         is for these states."""
-        types = {name for name, type_ in self.machine.state_types.items() if type_.any_key}
         found: set[str] = set()
-        for path, node in self.states if types else ():
-            outer = path.rpartition("/")[0] if node.type in types else ""
+        for path, node in self.states:
+            outer = path.rpartition("/")[0] if isinstance(node, Leaf) and node.any_key else ""
             while outer and outer not in found:
                 found.add(outer)
                 outer = outer.rpartition("/")[0]

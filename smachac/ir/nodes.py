@@ -267,14 +267,14 @@ class _State:
 class Leaf(_State):
     """One skill of a state type.
 
-    `open`: the state type has no interface, so its keys and outcomes are unknown; or it is a state
-    of YASMIN that can use any key. `blocking`: it
+    `open`: the state type has no interface, so its keys and outcomes are unknown. `blocking`: it
     waits for the outside world, as its interface declares. `writes` are pairs of an outcome and
     output keys: an output in it is written on those outcomes only, any other output on all outcomes
     except `preempted`. `class_facts` are those of its Python class, if it was read.
 
     The other fields are facts of the state type (docs/state_types.md, Facts). `built_in` is the
     name of the built-in state type; it is empty for a type of the user, also for one of that name.
+    `any_key`: it is a state of YASMIN; it is open, but its outcomes are known.
     `misplaced_keys` are the input keys that the script writes as variables of the state (SM003).
     `synthetic`: no such state is written; it stands for what is not known of its container.
     """
@@ -288,6 +288,7 @@ class Leaf(_State):
     class_facts: ClassFacts | None = field(default=None, compare=False, repr=False)
     built_in: str = field(default="", compare=False, repr=False)
     stand_in: bool = field(default=False, compare=False, repr=False)
+    any_key: bool = field(default=False, compare=False, repr=False)
     adds_frames: tuple[str, ...] | None = field(default=None, compare=False, repr=False)
     misplaced_keys: tuple[str, ...] = field(default=(), compare=False, repr=False)
 

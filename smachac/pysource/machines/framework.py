@@ -105,6 +105,8 @@ def set_interface(
             items = value.items
             value = TupleValue(items) if isinstance(items, tuple) else value
         evaluator.heap.set(me.slots, slot, value)
+    if "$noted" not in me.slots:  # so that a call under a condition is one of several possibilities
+        evaluator.heap.set(me.slots, "$noted", TupleValue(()))
 
 
 def make_container(evaluator: Interpreter, me: Instance, kind: str) -> None:

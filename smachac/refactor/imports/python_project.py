@@ -98,10 +98,9 @@ def _refusals(graph: Graph, constructions: Constructions) -> tuple[tuple[Span, s
     """The places of what no script can have, each with the reason."""
     if not graph.framework.code:
         return ((graph.machine.root.span, f"this is a machine for {graph.framework.name}"),)
-    return tuple(
-        (made.span, f"`{names[-1]}`: {made.refusal}")
-        for names, made in constructions.states.items() if made.refusal
-    )  # fmt: skip
+    found = {(made.span, f"`{names[-1]}`: {made.refusal}"): None
+             for names, made in constructions.states.items() if made.refusal}  # fmt: skip
+    return tuple(found)
 
 
 def _free(word: str, taken: Collection[str]) -> str:

@@ -339,8 +339,8 @@ class _Writer:
                       "write its rules in `outcome_map`, or `join`")  # fmt: skip
         if constructions.one_rule and (pair := _both_hold(node)) is not None:
             names_ = " and ".join(f"`{rule.outcome}`" for rule in pair)
-            self.lose(pair[0].span, f"the rules of {names_} of `{node.name}` can both hold: there"
-                      " YASMIN stops with an exception, and a script takes the first one",
+            self.lose(pair[0].span, f"the rules of {names_} of `{node.name}` can both hold: then"
+                      " YASMIN stops with an exception, and a script selects one of them",
                       "write rules of which one holds")  # fmt: skip
         fields = {}
         default = node.default_outcome

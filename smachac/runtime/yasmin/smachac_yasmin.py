@@ -291,6 +291,11 @@ class _Container(_Node):
         state.remapping = dict(remapping)
         self.children[name] = state
 
+    def configure_all(self):
+        """Configure the states, as a state machine of YASMIN does with its own."""
+        for state in self.children.values():
+            state.configure()
+
     def keys(self, state):
         """A function that makes the userdata of a state."""
         own, remapping = state.state, state.remapping
@@ -447,6 +452,8 @@ class Concurrence(_Container, State):
         """Add a state."""
         self.take(name, state, remapping)
 
+    configure = _Container.configure_all
+
     def cancel_state(self):
         self.request()
         State.cancel_state(self)
@@ -536,6 +543,8 @@ class Repeat(_Container, State):
     def keys(self, state):
         names = _AllNames(self.prefix)
         return partial(AllKeys, inputs=names, outputs=names)
+
+    configure = _Container.configure_all
 
     def cancel_state(self):
         self.request()

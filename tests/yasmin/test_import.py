@@ -1,0 +1,269 @@
+"""Machines in Python for YASMIN as scripts: their programs for YASMIN do what the machines do."""
+
+from __future__ import annotations
+
+import importlib
+import shutil
+import sys
+import zlib
+from collections import Counter
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from smachac.commands.cli import main
+from smachac.driver import analyse_script, build
+from smachac.driver.python_machines import Built, PythonProject
+from smachac.frontend.files import Disk, disk_library
+from smachac.refactor.imports.proof import differences
+from smachac.targets.yasmin import TARGET
+from tests.refactor.test_python_import import CASES
+from tests.yasmin.programs import ENGINE, loaded
+from tests.yasmin.test_read_back import compare_generated
+
+MODULES = ("machine", "grippers", "imported_states")
+RUNS = 60
+
+
+@pytest.fixture
+def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """The project of an import of the case `yasmin`, whose modules can be imported."""
+    for path in (CASES / "yasmin").glob("*.py"):
+        shutil.copy(path, tmp_path)
+    (tmp_path / ".git").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert main(["import", "machine.py", "-o", "project", "-q"]) == 0
+    monkeypatch.setitem(sys.modules, "yasmin", ENGINE)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.syspath_prepend(str(tmp_path / "project"))
+    importlib.invalidate_caches()
+    yield tmp_path / "project"
+    for name in MODULES:
+        sys.modules.pop(name, None)
+
+
+def files_of(script: Path) -> dict[str, str]:
+    checked = analyse_script(script).checked
+    assert checked is not None
+    return build(checked, TARGET, disk_library(script, []), [])
+
+
+def values(blackboard: Any) -> dict[str, Any]:
+    return {key: blackboard[key] for key in blackboard.keys()}  # noqa: SIM118
+
+
+def original() -> tuple[str, dict[str, Any]]:
+    """The outcome of the machine in Python, and what its blackboard holds then."""
+    machine: Any = importlib.import_module("machine")
+    blackboard = ENGINE.Blackboard()
+    for key, value in {"weight": 1, "other": 4, "log": [], "last": "bye"}.items():
+        blackboard[key] = value
+    return machine.build()(blackboard), values(blackboard)
+
+
+def imported(files: dict[str, str]) -> tuple[str, dict[str, Any]]:
+    """The same of the program of the script."""
+    with loaded(files) as module:
+        run = module.run()
+        return run.execute(), values(run.blackboard)
+
+
+def test_the_program_does_what_the_machine_does(project: Path) -> None:
+    outcome, held = original()
+    assert outcome == "finished"
+    assert held["log"] == ["first kg"] * 3 + ["note hello", "look 2 4", "look 1 4", "note bye"]
+    assert (held["beep 3"], held["force"]) == (3, 2.5)
+    assert imported(files_of(project / "main.yml")) == (outcome, held)
+
+
+def test_random_outcomes(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    files = files_of(project / "main.yml")
+    visits: Counter[str] = Counter()
+    run = 0
+
+    def execute(self: Any, _blackboard: Any) -> str:
+        name = next(cls.__name__ for cls in type(self).__mro__ if cls.__name__ in outcomes)
+        visits[name] += 1
+        number = zlib.crc32(f"{run} {name} {visits[name]}".encode())
+        return outcomes[name][number % len(outcomes[name])]
+
+    machine, grippers = (importlib.import_module(name) for name in MODULES[:2])
+    owners = {"Weigh": machine, "Beep": machine, "Close": grippers, "Look": grippers}
+    outcomes = {"Weigh": ["light", "heavy"], "Beep": ["DONE"], "Close": ["closed", "lost"],
+                "Look": ["seen", "NEXT"], "CbState": ["noted"]}  # fmt: skip
+    for name, owner in owners.items():
+        monkeypatch.setattr(getattr(owner, name), "execute", execute)
+    ends = set()
+    for run in range(RUNS):
+        visits.clear()
+        outcome, _ = original()
+        expected = Counter(visits)
+        visits.clear()
+        assert imported(files)[0] == outcome
+        assert visits == expected
+        ends.add(outcome)
+    assert ends == {"finished", "failed"}
+
+
+@pytest.mark.parametrize("name", ["yasmin", "yasmin_rare"])
+def test_the_program_has_the_containers_of_the_machine(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The graph of Python is that of the script (the proof), and that is the one of the program."""
+    shutil.copytree(CASES / name, tmp_path, dirs_exist_ok=True)
+    (tmp_path / ".git").mkdir()
+    monkeypatch.chdir(tmp_path)
+    main(["import", "machine.py", "-o", "project", "-q"])
+    built: list[Built] = []
+    PythonProject(Disk()).read(Path("machine.py"), built=built)
+    checked = analyse_script(Path("project/main.yml")).machine
+    assert checked is not None
+    graph, constructions = built[0]
+    assert differences(graph.machine.root, checked.root, constructions) == []
+    files = files_of(Path("project/main.yml"))
+    compare_generated(checked, files, tmp_path / "out")
+
+
+# --- states of YASMIN in scripts
+
+GRASP = """\
+from yasmin import State
+
+
+class Grasp(State):
+    def __init__(self, times=1, fails=False):
+        super().__init__(outcomes=["held", "lost"])
+        self.times, self.fails = times, fails
+
+    def execute(self, blackboard):
+        if self.fails:
+            raise ValueError("no gripper")
+        blackboard["log"] = [*blackboard["log"], f"{self.times} {blackboard['part']}"]
+        blackboard["part"] = blackboard["part"] * 10
+        return "held"
+"""
+
+INTERFACE = """\
+name: Grasp
+variables: {times: {default: 1}, fails: {default: false}}
+input_keys: {"*": {}}
+outcomes: {held: {}, lost: {}}
+code: {yasmin: "arm:Grasp"}
+"""
+
+SCRIPT = """\
+name: pick
+outcomes: [done, failed]
+userdata: {box: 7, part: 9, log: []}
+states:
+- FIRST: {template: Grasp, times: 1, transitions: {held: INSIDE, lost: failed}}
+- INSIDE:
+    template: StateMachine
+    outcomes: [over]
+    remapping: {part: box}
+    states:
+    - SECOND: {template: Grasp, times: 2, transitions: {held: THIRD, lost: THIRD}}
+    - THIRD: {template: Grasp, times: 3, remapping: {part: bin, bin: part}, \
+transitions: {held: over, lost: over}}
+    transitions: {over: FOURTH}
+- FOURTH: {template: Grasp, times: 4, fails: true, \
+transitions: {held: failed, lost: failed, error: done}}
+"""
+
+
+@pytest.fixture
+def arm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str, str], Path]]:
+    """Writes a script whose state type `Grasp` has a class of YASMIN."""
+
+    def written(script: str, interface: str = INTERFACE) -> Path:
+        (tmp_path / "templates").mkdir()
+        (tmp_path / "templates" / "Grasp.yml").write_text(interface, "utf-8")
+        (tmp_path / "arm.py").write_text(GRASP, "utf-8")
+        (tmp_path / "main.yml").write_text(script, "utf-8")
+        importlib.invalidate_caches()
+        return tmp_path / "main.yml"
+
+    monkeypatch.setitem(sys.modules, "yasmin", ENGINE)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    yield written
+    sys.modules.pop("arm", None)
+
+
+def test_states_have_the_blackboard_with_the_remappings_around_them(
+    arm: Callable[..., Path],
+) -> None:
+    files = files_of(arm(SCRIPT))
+    with loaded(files) as module:
+        run = module.run()
+        run.blackboard["bin"] = 5
+        assert run.execute() == "done"
+        assert values(run.blackboard)["log"] == ["1 9", "2 7", "3 5"]
+        assert values(run.blackboard)["box"] == 70
+
+
+def test_declared_keys_are_those_of_the_container(arm: Callable[..., Path]) -> None:
+    interface = INTERFACE.replace('{"*": {}}', "{part: {}}\noutput_keys: {part: {}}")
+    script = SCRIPT.replace("userdata: {box: 7, part: 9, log: []}", "userdata: {box: 7, part: 9}")
+    script = script.replace("    remapping: {part: box}\n",
+                            "    input_keys: [part]\n    remapping: {part: box}\n")  # fmt: skip
+    script = script.replace("remapping: {part: bin, bin: part}, ", "")
+    files = files_of(arm(script, interface))
+    assert 'Native(states["pick/INSIDE/SECOND"], inputs=["part"], outputs=["part"])' in next(
+        iter(files.values())
+    )
+    with loaded(files) as module:
+        run = module.run()
+        run.blackboard["log"] = []
+        assert run.execute() == "done"
+        held = values(run.blackboard)
+        assert held["log"] == ["1 9", "2 7", "3 70"]
+        assert (held["box"], held["INSIDE/part"], held["part"]) == (7, 700, 90)
+
+
+def test_a_request_reaches_the_state_that_runs(arm: Callable[..., Path]) -> None:
+    files = files_of(arm(SCRIPT))
+    with loaded(files) as module:
+        run = module.run()
+        run.blackboard["bin"] = 5
+        grasp: Any = sys.modules["arm"].Grasp
+        seen: list[tuple[int, bool]] = []
+        before = grasp.execute
+
+        def execute(self: Any, blackboard: Any) -> str:
+            if self.times == 2:
+                run.request_preempt()
+            seen.append((self.times, self.is_canceled()))
+            outcome: str = before(self, blackboard)
+            return outcome
+
+        grasp.execute = execute
+        assert run.execute() == "done"
+        assert seen == [(1, False), (2, True), (3, False), (4, False)]
+
+
+@pytest.mark.parametrize(
+    "text, help",
+    [
+        ("Grasp", "write it as `my_robot.states:Grasp`"),
+        ("arm.Grasp", "write it as `my_robot.states:Grasp`"),
+        ("arm:no class", "write it as `my_robot.states:Grasp`"),
+        ("Grasp.tpl.py", "write it as `my_robot.states:Grasp`"),
+    ],
+)
+def test_a_wrong_reference_is_reported(text: str, help: str, arm: Callable[..., Path]) -> None:
+    report = analyse_script(arm(SCRIPT, INTERFACE.replace("arm:Grasp", text))).report
+    (found,) = [item for item in report if "class in a Python module" in item.message]
+    assert found.finding.help == help
+
+
+def test_other_targets_name_the_way(
+    arm: Callable[..., Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    script = arm(SCRIPT)
+    assert main(["check", str(script), "-q"]) == 0
+    assert main(["build", str(script), "--target", "python", "-o", str(script.parent / "out")]) == 1
+    error = capsys.readouterr().err
+    assert "the state type `Grasp` has no code for Python" in error
+    assert "build it with `--target yasmin`" in error
