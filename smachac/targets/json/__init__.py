@@ -21,7 +21,7 @@ VERSION = 2
 
 
 _NOT_IN_THE_GRAPH = frozenset(
-    ["class_facts", "given", "written", "role", "limits", "built_in", "stand_in", "adds_frames",
+    ["class_facts", "given", "written", "role", "limits", "built_in", "stand_in", "any_key", "adds_frames",
      "tags", "failure", "ignored", "item_span", "exhausted_span", "loop_spans", "final_spans",
      "frame", "secret", "to_span", "misplaced_keys", "takes_userdata", "synthetic"]
 )  # fmt: skip
