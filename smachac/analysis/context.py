@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, TypeAlias, TypeVar, cast
 
 from smachac.analysis.accesses import Accesses, accesses
 from smachac.analysis.code_slots import CodeSlot, code_slots
-from smachac.analysis.control_flow import Linear, absorbed, endless_states
+from smachac.analysis.control_flow import (
+    Linear,
+    Trap,
+    absorbed,
+    endless_states,
+    outline,
+    stuck_states,
+)
 from smachac.analysis.definite_assignment import DataFlow, data_flow
 from smachac.analysis.error_recovery import absorbed_keys, absorbed_machine
 from smachac.analysis.expression_errors import Fault
@@ -296,6 +303,18 @@ class Context:
     def endless(self) -> frozenset[str]:
         """The paths of the states that never end."""
         return endless_states(self.states)
+
+    @cached_property
+    def traps(self) -> dict[str, Trap]:
+        """The containers with states from which no outcome can be reached, by path."""
+        found = {}
+        for (path, container), whole in zip(self.linear, self.absorbed, strict=True):
+            if isinstance(container, StateMachine) and container.forever:
+                continue
+            flow = outline(path, container, self.endless, whole)
+            if stuck := self.of_container(stuck_states, path, flow):
+                found[path] = Trap(container, flow, stuck)
+        return found
 
     @cached_property
     def endings(self) -> Endings:

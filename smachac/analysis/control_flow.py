@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import PathStep, ended, entered
 from smachac.diagnostics.spelling import Guesser, guesser
@@ -171,6 +171,15 @@ def stuck_states(container: Linear) -> list[str]:
         return []
     stuck = reachable(container) - ends
     return list(dict.fromkeys(child.name for child in container.children if child.name in stuck))
+
+
+class Trap(NamedTuple):
+    """A container with states from which none of its outcomes can be reached: their names, and the
+    container as `outline` returns it."""
+
+    container: Linear
+    flow: Linear
+    stuck: list[str]
 
 
 def step_graph(names: Iterable[str], steps: SiblingSteps) -> nx.DiGraph:

@@ -38,7 +38,7 @@ examples:
 
 The code of your states stays where it is: the scripts name your classes. States of SCXML and
 YASMIN get classes whose code is to be written. The command prints what
-it could not take over, and proves that each script has the same graph as the machine in Python.
+it could not take over, and proves that each script has the same graph as the machine in the file.
 Your code is not run. Files that were edited since an import are never overwritten.
 
 exit codes: 0 all machines were imported and proven, 1 a machine was not, or a file is in the way,
@@ -89,7 +89,7 @@ def _assumption(text: str) -> tuple[str, bool]:
 
 
 def import_command(arguments: Namespace) -> int:
-    """Import a Python file; the exit code."""
+    """Import a file; the exit code."""
     from smachac.commands.cpu_time import CpuTimeError, limited_time
     from smachac.commands.memory import limited_memory
     from smachac.frontend.files import Disk
@@ -152,7 +152,7 @@ def _put(made: Imported, arguments: Namespace) -> int:
         return FINDINGS
     for name in edited:
         print(f"error: {shown(folder / name)} was edited, or is no file of an import of this"
-              " Python file: nothing was written", file=sys.stderr)  # fmt: skip
+              " file: nothing was written", file=sys.stderr)  # fmt: skip
     if edited:
         print("help: import into an empty folder with `-o`, and compare the two", file=sys.stderr)
         return FINDINGS
@@ -207,7 +207,7 @@ def _text(path: Path) -> str | None:
 
 
 def _unused(folder: Path, texts: Mapping[str, str]) -> list[str]:
-    """The files of an earlier import of the same Python file that this one does not have."""
+    """The files of an earlier import of the same file that this one does not have."""
     from smachac.refactor.imports.project import imported_from
 
     (source, *_) = {imported_from(text) for text in texts.values()}

@@ -192,7 +192,8 @@ def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
     found = [*_near_names(item, text, around.vocabulary)]
     same = _same_keys(item.span, text.tree)
     if same != 1 or item.span.text not in KNOWN_FIELDS:
-        found += _mentioned_names(item, around.others)
+        # The names in code are not those of the script around it.
+        found += _mentioned_names(item, () if item.code == "SM019" else around.others)
     if same > 1:  # which of them is wrong is not known
         found = [_only_possible(made) for made in found]
     found += _unused_names(item, text)
@@ -354,7 +355,7 @@ def _mentioned_names(item: Diagnostic, others: Sequence[str]) -> Iterator[Candid
     own = (*item.finding.arguments[:MOST_WORDS], *near)
     for cost, names in ((1.6, own), (1.7, others)):
         for name in dict.fromkeys(names):
-            if name != word and NAME.fullmatch(name):
+            if name != word and NAME.fullmatch(name) and not _are_of_two_kinds(word, name):
                 yield candidate(cost, RENAME, Edit(span=item.span, text=name))
 
 
@@ -552,7 +553,9 @@ def _moved_out(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
         rest = text[end:last]
         whole = Span(source, start, last)
         if columns > 0 and first < start:
-            operator = f"move them {columns} columns to the left"
+            name, position = inner.key.span.text, source.position
+            after = f"behind line {position(last - 1)[0]}" if rest else "there"
+            operator = f"move `{name}` {after}, {columns} columns to the left"
             yield candidate(1.3, operator, Edit(span=whole, text=rest + moved))
 
 

@@ -10,7 +10,7 @@ debugging type errors, POPL 2014.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from itertools import chain
@@ -160,9 +160,11 @@ def clusters(
     for item in sorted(serious, key=_is_no_error)[:MOST_CLUSTERS]:
         if trials <= 0:
             break
-        named = (other.finding.arguments for other in serious if other is not item)
+        rest = [other for other in serious if other is not item]
+        named = (other.finding.arguments for other in rest)
         around = Around(read, [*chain.from_iterable(named)], types, interface, vocabulary)
-        proposed = _proposals(item, around)
+        wrong = {other.span.text for other in rest if _has_same_fault(other, item)}
+        proposed = [made for made in _proposals(item, around) if not _writes_one_of(made, wrong)]
         proof = _proof(item, analysis, analysed, proposed[:trials])
         trials -= len(proposed)
         if proof is not None:
@@ -312,6 +314,18 @@ def _proposals(item: Diagnostic, around: Around) -> Sequence[Candidate]:
         is_possible = repair.certainty is Certainty.POSSIBLE
         found.append(Candidate(cost + 2 * is_possible, repair))
     return sorted(found, key=lambda made: made.cost)
+
+
+def _has_same_fault(one: Diagnostic, other: Diagnostic) -> bool:
+    """Whether two findings are about the names at their places, and for the same reason."""
+    about = [item.finding.arguments[:1] == (item.span.text,) for item in (one, other)]
+    return one.kind is other.kind and all(about)
+
+
+def _writes_one_of(made: Candidate, wrong: Collection[str]) -> bool:
+    """Whether a candidate only replaces a name by one of these."""
+    first, *others = made.repair.edits
+    return not others and first.text in wrong
 
 
 def _writes_rarer_name(repair: Repair, vocabulary: Vocabulary) -> bool:

@@ -13,6 +13,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import CODES
 from smachac.frontend.config import read_project
 from smachac.frontend.errors.references import package_help
+from smachac.repair.search import again, clusters
 from smachac.robots.fields import DataError, named, number
 from tests.trust.judged_repairs import shown
 from tests.trust.project_text import analysed
@@ -665,3 +666,122 @@ def test_a_list_in_place_of_a_text_with_a_look_up(topic: str) -> None:
 @pytest.mark.parametrize("topic", ["[[params, space], /load]", "[[[space]], /load]"])
 def test_a_look_up_in_a_text(topic: str) -> None:
     assert reported({"main.yml": TOPICS.format(topic=topic)}) == []
+
+
+HEAD = "name: sm\noutcomes: [done, failed]\nstates:\n"
+
+FIRST = {
+    "two unknown types": (
+        """\
+- A:
+    template: CallbackState
+    callbacks: {n: 'lambda ud: 1'}
+    transitions: {succeeded: B}
+- B:
+    template: Concurrent
+    outcomes: [done]
+    default_outcome: done
+    states:
+    - C: {template: SleepState, time: 1}
+    - D: {template: SleepState, time: 2}
+    outcome_map: {done: {C: succeeded, D: succeeded}}
+    transitions: {done: done}
+""",
+        [
+            ("SM013", "CallbackState", "did you mean `CallbacksState`?"),
+            ("SM013", "Concurrent", "did you mean `Concurrence`? Only a Concurrence has"),
+        ],
+    ),
+    "the name of a service as its type": (
+        """\
+- DETECT:
+    template: ServiceState
+    service: /detect
+    transitions: {succeeded: done, aborted: failed, preempted: failed}
+""",
+        [
+            (
+                "SM004",
+                "/detect",
+                "write `service_namespace: /detect`, and `service: std_srvs/Trigger`",
+            )
+        ],
+    ),
+    "the name of an action in another framework": (
+        """\
+- DRIVE:
+    template: SimpleActionState
+    action_name: drive
+    action: actionlib/TestAction
+    transitions: {succeeded: done, aborted: failed, preempted: failed}
+""",
+        [("SM003", "action_name", "did you mean `action_server_namespace`?")],
+    ),
+    "a number of retries": (
+        """\
+- A:
+    template: SleepState
+    time: 1
+    retries: 3
+    transitions: {succeeded: done, preempted: failed}
+""",
+        [("SM003", "retries", "write `retry: {on: [OUTCOME], max: NUMBER}`")],
+    ),
+    "a key that is read without userdata": (
+        """\
+- COUNT:
+    template: CallbacksState
+    output_keys: [n]
+    callbacks: {n: n + 1}
+    transitions: {succeeded: done, error: failed}
+""",
+        [("SM316", "n + 1", "write `'lambda ud: ud.n + 1'`")],
+    ),
+    "names of states as fields": (
+        """\
+- name: A
+  template: SleepState
+  time: 1
+  transitions: {succeeded: B, preempted: failed}
+- name: B
+  template: SleepState
+  time: 1
+  transitions: {succeeded: done}
+""",
+        [
+            ("SM004", "name", "write `- A:` in place of `- name: A`"),
+            ("SM004", "name", "write `- B:` in place of `- name: B`"),
+        ],
+    ),
+    "a param in code": (
+        """\
+- A:
+    template: SleepState
+    params: {pause: 1}
+    time: params.pause
+    transitions: {succeeded: done, preempted: failed}
+""",
+        [("SM019", "params", "a param is looked up outside of code: write `[params, pause]`")],
+    ),
+    "a loop without an end": (
+        "- A: {template: ScriptedState, outcomes: [ok], transitions: {ok: A}}\n",
+        [("SM202", "A", "lead an outcome of `A` to an outcome of `sm`")],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FIRST)
+def test_a_first_script(name: str) -> None:
+    states, expected = FIRST[name]
+    found = reported({"main.yml": HEAD + states})
+    assert [(code, text) for code, text, _ in found] == [row[:2] for row in expected]
+    for (_, _, help), (_, _, start) in zip(found, expected, strict=True):
+        assert help is not None
+        assert help.startswith(start)
+
+
+def test_no_repair_writes_another_unknown_type() -> None:
+    analysis = analysed({"main.yml": HEAD + FIRST["two unknown types"][0]})
+    found = clusters(analysis, analysis.report, again(analysis))
+    texts = {edit.text for cluster in found for edit in cluster.repair.edits}
+    assert texts == {"CallbacksState"}  # the help of the other finding has its type

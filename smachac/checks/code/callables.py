@@ -172,8 +172,8 @@ def _arguments(slot: CodeSlot, userdata: str) -> str:
 
 
 def _with_keys(slot: CodeSlot, tree: ast.expr, name: str, node: Node) -> str:
-    """Code in which the names of input keys stand for the keys of userdata."""
-    text, keys = slot.code.text, {key.name for key in node.inputs}
+    """Code in which the names of keys stand for the keys of userdata."""
+    text, keys = slot.code.text, {key.name for key in (*node.inputs, *node.outputs)}
     for word in reversed(free_names(tree)):
         if word.id in keys:
             start, _ = node_range(text, word)

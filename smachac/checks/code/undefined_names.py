@@ -293,7 +293,7 @@ def _uses(node: Node, code: Expression) -> Iterator[_Use]:
     tree = script_code(code.text).tree  # SM016 if there is none
     function = tree if isinstance(tree, ast.Lambda) else None
     packages = _packages(tree)
-    keys = {key.name for key in node.inputs}
+    keys = {key.name for key in (*node.inputs, *node.outputs)}
     found: set[str] = set()
     for name in script_code(code.text).free_names:
         word = name.id
@@ -344,7 +344,7 @@ def _fix(use: _Use, imported: list[str]) -> NameFix | None:
         return _param_fix(use)
     if word in CONSTANTS:
         return NameFix(f"write `{CONSTANTS[word]}`", edits=_edits(use, CONSTANTS[word]))
-    keys = [key.name for key in use.node.inputs]
+    keys = [key.name for key in (*use.node.inputs, *use.node.outputs)]
     if own and word in keys:
         meant = f"{own[0]}.{word}"
         return NameFix(f"did you mean `{meant}`?", edits=_edits(use, meant))
@@ -411,9 +411,11 @@ def _param_fix(use: _Use) -> NameFix:
         before, found, after = use.code.text.partition(ast.unparse(node))
         if found:
             parts = [f"'{part}'" for part in (before, after) if part]
-            parts.insert(1 if before else 0, f"[params, {param}]")
+            look_up = f"[params, {param}]"
+            parts.insert(1 if before else 0, look_up)
+            written = f"[{', '.join(parts)}]" if len(parts) > 1 else look_up
             return NameFix(
-                f"a param is looked up outside of code: write `[{', '.join(parts)}]`",
+                f"a param is looked up outside of code: write `{written}`",
                 f"`params.{param}` is used in code, which has no name `params`",
             )
     return NameFix("a param is looked up outside of code: `[params, NAME]`")

@@ -200,8 +200,12 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
         # Where SM209 is reported, a state does not lead `preempted` out of the container.
         stops = path in again or ends_preempted(container)
         known = {container.catches, PREEMPTED if stops else ""}
+        if possible is None:
+            continue
+        if path in context.traps and possible.isdisjoint(outcome_names(container)):
+            continue  # SM202
         for outcome in container.outcomes:
-            if possible is not None and outcome.name not in possible | known:
+            if outcome.name not in possible | known:
                 yield _impossible(path, container, outcome)
 
 

@@ -19,7 +19,6 @@ from smachac.analysis.control_flow import (
     shortest_paths,
     step_graph,
     steps_of,
-    stuck_states,
     way,
 )
 from smachac.analysis.error_recovery import undeclared_writes
@@ -78,14 +77,7 @@ def trap(context: Context) -> Iterator[Finding]:
           - LOOK: {template: ScriptedState, outcomes: [seen], transitions: {seen: APPROACH}}
           - APPROACH: {template: ScriptedState, outcomes: [near], transitions: {near: PICK}}
     """
-    endless = context.endless
-    for (path, container), whole in zip(context.linear, context.absorbed, strict=True):
-        if isinstance(container, StateMachine) and container.forever:
-            continue
-        flow = outline(path, container, endless, whole)
-        stuck = context.of_container(stuck_states, path, flow)
-        if not stuck:
-            continue
+    for path, (container, flow, stuck) in context.traps.items():
         steps = steps_of(flow)
         children = {child.name: child for child in reversed(container.children)}
         graph = step_graph(steps, steps)
@@ -225,7 +217,7 @@ def unbounded_loop(context: Context) -> Iterator[Finding]:
     for path, container in looping:
         forever = isinstance(container, StateMachine) and container.forever
         whole = outline(path, container, endless)
-        trapped = frozenset(() if forever else stuck_states(whole))
+        trapped = frozenset(context.traps[path].stuck if path in context.traps else ())
         flow = _unpreempted(whole)
         steps = steps_of(flow)
         waits = frozenset(

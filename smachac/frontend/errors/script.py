@@ -134,14 +134,22 @@ def duplicate_key(key: Word, first: Span) -> Finding:
 FOREIGN = {
     "autonomy": "remove it: smachac has no levels of autonomy",
     "child_termination_cb": "write `join: any` if the first branch that ends must stop the others",
+    "base": "name the base with `template:`",
+    "children": "write `states:`",
     "class": "name the state type with `template:`",
     "initial_state": "write `initial:`",
     "io_keys": "list the keys in `input_keys` and in `output_keys`",
+    "item": "write `it_label:` at an Iterator for the name of one item",
+    "items": "write `it:` at an Iterator for the items, and `it_label:` for the name of one",
+    "max_retries": "write `retry: {on: [OUTCOME], max: NUMBER}`",
+    "next": "write `transitions: {OUTCOME: STATE}`",
     "outcome_cb": "write rules in `outcome_map`",
     "parameters": "write each parameter as a variable of the state, or constants in `params`",
+    "retries": "write `retry: {on: [OUTCOME], max: NUMBER}`",
+    "substates": "write `states:`",
     "values": "write initial values in `userdata`",
 }
-"""Fields of SMACH and FlexBE that scripts lack, each with the help for it."""
+"""Fields of other tools that scripts lack, each with the help for it."""
 
 ELSEWHERE = {
     "on_error": (
@@ -219,7 +227,7 @@ def unknown_variable(
     effect = f"{lacks} missing" if choice.required else None
     if not is_known:
         foreign = None if sure else FOREIGN.get(word.text)
-        effect = "SMACH or FlexBE has such a field, smachac has not" if foreign else effect
+        effect = "other tools have such a field, smachac has not" if foreign else effect
         if word.text in ELSEWHERE and not sure:
             effect, foreign = ELSEWHERE[word.text]
         if not (sure or foreign) and owner.part == "variable":

@@ -52,6 +52,7 @@ from smachac.frontend.script.params import (
 from smachac.frontend.script.properties import properties_of
 from smachac.frontend.script.resolve_cache import CachedCall, ResolveCache, same_objects
 from smachac.frontend.script.state_fields import (
+    NAME_WORDS,
     Entries,
     FieldTable,
     another_state,
@@ -59,6 +60,7 @@ from smachac.frontend.script.state_fields import (
     has_unknown_outcomes,
     has_wrong_transitions,
     is_field,
+    name_as_field,
     read_fields,
     recovered_params,
     second_key,
@@ -72,6 +74,7 @@ from smachac.frontend.script.sub_scripts import (
 )
 from smachac.frontend.script.unknown_templates import (
     Searched,
+    meant_container,
     missing_template,
     missing_template_help,
     unknown_template,
@@ -471,6 +474,11 @@ class _Resolver:
         nothing = isinstance(first.value, Scalar) and first.value.value is None
         if nothing and rest:
             return self.read(name, expanded(rest, self.report), around)
+        if rest and is_field(rest[0]) and name.text in NAME_WORDS:
+            inner = name_of(first.value)
+            if inner is not None and inner.text:
+                self.report.append(name_as_field(first, inner))
+                return self.read(inner, expanded(rest, self.report), around)
         if nothing or not isinstance(first.value, Map):
             found = kind_of(first.value)
             fault = "is empty" if nothing else f"must be a mapping of variables, not {found}"
@@ -730,9 +738,9 @@ class _Resolver:
             called = [] if role or is_known else self.library.script_names(around.source.name)
             found_in = Searched(searched, names, known, called, other)
             self.not_found(word.text, unknown_template(word, read, found_in, self.other_type))
-            meant = schema.CONTAINERS.get(near or "")
-            if meant is not None:
-                return schema.CONTAINER_TYPES[meant], meant
+            kind = schema.CONTAINERS.get(near or meant_container(word.text, entries))
+            if kind is not None:
+                return schema.CONTAINER_TYPES[kind], kind
             return StateType(name=word.text, open=True), role or nested
         # Some meta blocks of SMACHA name the kind `container` for a state.
         is_container = found.kind == "container" and not found.prints_itself

@@ -10,7 +10,8 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, did_you_mean
-from smachac.diagnostics.source import Word
+from smachac.diagnostics.repair import Edit
+from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import (
     MOST_EXPLAINED,
     guesser_of,
@@ -170,13 +171,15 @@ def read_fields(
     for part, key in table.listed:
         read[part] = (*read.get(part, ()), *listed_keys(entries[key].value))
     missing = [key for key in table.missing if key not in rejected]
+    unquoted = [(key, variable) for key, variable in table.unquoted
+                if not _is_name_for_type(key, variable, entries, missing, report)]  # fmt: skip
     if missing:
         _report_missing(missing, entries, owner, type_, read, inner, report)
     if table.variables:
         read["variables"] = tuple(_variables(table, entries, type_))
     if owner == "base" and "function_name" in entries:
         check_unquoted(entries["function_name"].value, "name", report)
-    for key, variable in table.unquoted:
+    for key, variable in unquoted:
         _check_unquoted(entries[key].value, variable, report)
     if type_.prints_itself:
         read["written"] = tuple(_written(read["name"], entries, scope))
@@ -213,8 +216,8 @@ def with_recovered_fields(
 ) -> dict[str, Entry]:
     """The fields, with those of unknown names also under the names that are meant, where that is
     certain: then one misspelt name is one finding. The role of a variable means the variable, as
-    `conditions` in a ConditionalOutcomeState. Fields whose name and value have changed places are
-    reported."""
+    `conditions` in a ConditionalOutcomeState, and so does its name in another framework. Fields
+    whose name and value have changed places are reported."""
     own = schema.OWN_FIELDS[owner]
     if own.issuperset(entries):
         return entries
@@ -233,6 +236,8 @@ def with_recovered_fields(
         variable.role: name for name, variable in type_.variables.items() if variable.role
     }
     meant |= {roles[key]: entries[key] for key in unknown if key in roles}
+    for words in type_.other_names.values():
+        meant |= {words[key]: entries[key] for key in unknown if key in words}
     other = next((entries[key] for key in unknown if key in TEMPLATE_WORDS), None)
     if other is not None and owner != "base":
         meant["template"] = other
@@ -481,6 +486,23 @@ def _with_type(name: str, variable: VariableType | None) -> str | None:
     return f"add `{name}` with the type of {what}, such as `{name}: {example}`"
 
 
+def _is_name_for_type(
+    key: str, variable: VariableType, entries: Entries, missing: list[str], report: Report
+) -> bool:
+    """Whether a variable for a type of ROS has the name of a service or action in its place, for
+    which the one missing variable is: this is reported, and that variable is not missing then."""
+    text = name_of(entries[key].value)
+    if variable.role not in TYPE_EXAMPLES or text is None or not text.text.startswith("/"):
+        return False
+    if len(missing) != 1:
+        return False
+    what, example = TYPE_EXAMPLES[variable.role]
+    message = f"`{text.text}` is a name, but `{key}` is the type of {what}"
+    help = f"write `{missing.pop()}: {text.text}`, and `{key}: {example}` with the type that it has"
+    report.append(wrong_shape(text.span, message, help, arguments=(key, text.text)))
+    return True
+
+
 def _example(variable: VariableType) -> str:
     """A value that the variable can have; empty if there is no short one."""
     limits = variable.limits
@@ -596,6 +618,19 @@ def _owner_of(owner: FieldOwner, type_: StateType, *, of_type: bool) -> Owner:
     if owner == "base":
         return Owner(owner, "the script")
     return Owner(owner, "a state" if owner == "state" else f"a container of type `{owner}`")
+
+
+NAME_WORDS = frozenset(["name", "state", "id"])
+"""The keys under which other tools write the name of a state."""
+
+
+def name_as_field(entry: Entry, name: Word) -> Diagnostic:
+    """SM004 for a state whose name is written as a field."""
+    key, span = str(entry.key.value), entry.key.span
+    message = f"`{key}` is no field of a state: the name of a state is the key of its item"
+    edit = Edit(span=Span(span.source, span.start, name.span.end), text=f"{name.span.text}:")
+    help = f"write `- {name.text}:` in place of `- {key}: {name.text}`"
+    return wrong_shape(span, message, help, arguments=(key, name.text), edits=(edit,))
 
 
 def is_field(entry: Entry) -> bool:

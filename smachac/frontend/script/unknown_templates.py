@@ -100,10 +100,21 @@ def unknown_template(
         help = f"`{word.text}` is a sub-script: write `script: {word.text}`"
     elif not other and guesser_of(tuple(known)).unique_match(word.text) is None:
         help = type_of_other_framework(word.text, entries, types, find) if entries else ""
+        kind, field = _only_kind(entries) if "states" in entries else ("", "")
         fitting, used = types_with_the_names(entries, word.text, types, find)
-        if fitting and not help:
+        if kind and not help:
+            help = f"did you mean `{kind}`? Only a {kind} has `{field}`"
+        elif fitting and not help:
             help = f"did you mean {either(fitting)}, with {both(used)}?"
     return template_not_found(word, folders, known, other, help)
+
+
+def meant_container(word: str, entries: Mapping[str, Entry]) -> str:
+    """The kind of container that is meant by an unknown type of a state with `states`: the one with
+    a name near to it, else the only one that has the fields of the state; empty without one."""
+    if "states" not in entries:
+        return ""
+    return guesser_of(tuple(schema.CONTAINERS))(word) or _only_kind(entries)[0]
 
 
 def missing_template_help(
