@@ -36,8 +36,8 @@ examples:
   smachac check project/main.yml                      then: find the errors in the script
   smachac build project/main.yml --target python      and generate its program
 
-The code of your states stays where it is: the scripts name your classes. States of SCXML and
-YASMIN get classes whose code is to be written. The command prints what
+The code of your states stays where it is: the scripts name your classes, for SMACH or for YASMIN.
+States of SCXML and XML get classes whose code is to be written. The command prints what
 it could not take over, and proves that each script has the same graph as the machine in the file.
 Your code is not run. Files that were edited since an import are never overwritten.
 

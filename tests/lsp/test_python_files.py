@@ -349,7 +349,7 @@ def test_definitions_in_a_file_for_yasmin(client: Client, picking: Path) -> None
     def line(word: str, after: str) -> str:
         (found,) = ask(client, "definition", uri, position=position(PICKING, word, after))
         path = picking.parent / str(found["uri"]).rpartition("/")[2]
-        return path.read_text().splitlines()[found["range"]["start"]["line"]]
+        return path.read_text().splitlines()[int(found["range"]["start"]["line"])]
 
     assert line("BOTH", '"held": ').startswith('sm.add_state("BOTH"')
     assert line("Grasp", '"GRASP", ') == "class Grasp(State):"

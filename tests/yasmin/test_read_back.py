@@ -1,5 +1,5 @@
-"""Machines of scripts in Python for YASMIN, plain and as the target prints them: what is read is the
-machine."""
+"""Machines of scripts in Python for YASMIN, plain and as the target prints them: what is read is
+the machine."""
 
 from __future__ import annotations
 

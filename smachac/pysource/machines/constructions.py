@@ -272,8 +272,9 @@ class _Reader:
         callback = next((argument for argument in found if argument.name.endswith(_FUNCTIONS)
                          and not argument.is_known), None)  # fmt: skip
         obstacle = "" if callback is None else _no_import(callback.text)
+        short = _short(named.get("cb") or named.get("callback"), made.cls.short)
         return Construction(
-            span=span, library=made.cls.name, short=_short(named.get("cb") or named.get("callback"), made.cls.short),
+            span=span, library=made.cls.name, short=short,
             arguments=found, obstacle=obstacle, types=self._types(made), node="node" in named,
         )  # fmt: skip
 

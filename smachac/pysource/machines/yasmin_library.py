@@ -246,10 +246,9 @@ def _run(*, injects: bool) -> Run:
             values = blackboard.items if isinstance(blackboard, DictValue) else {}
             defaults = me.slots.get("$defaults") if injects else None
             more = defaults.items if isinstance(defaults, DictValue) else {}
-            is_known = isinstance(values, Mapping) and isinstance(more, Mapping)
-            if (blackboard != NONE and not isinstance(blackboard, DictValue)) or not is_known:
-                noted(BLACKBOARD)(evaluator, arguments, span)
-            elif "$executed" in me.slots:
+            is_other = blackboard != NONE and not isinstance(blackboard, DictValue)
+            again = bool(values) and "$executed" in me.slots
+            if is_other or again or not (isinstance(values, Mapping) and isinstance(more, Mapping)):
                 noted(BLACKBOARD)(evaluator, arguments, span)
             elif values or more:
                 whole = DictValue({"items": {**more, **values}})

@@ -83,8 +83,9 @@ def _concurrence(evaluator: Interpreter, arguments: Arguments, span: Span | None
 def _repeat(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
     me = _made("Iterator", evaluator, arguments)
     if me is not None:
-        for slot, name in (("$it", "items"), ("$it_label", "item"), ("$again", "again"),
-                           ("$exhausted_outcome", "exhausted"), ("$renamed", "renamed")):  # fmt: skip
+        slots = {"items": "$it", "item": "$it_label", "again": "$again",
+                 "exhausted": "$exhausted_outcome", "renamed": "$renamed"}  # fmt: skip
+        for name, slot in slots.items():
             evaluator.heap.set(me.slots, slot, _named(arguments, name))
     return NONE
 
@@ -101,7 +102,7 @@ def _add(at: int) -> Run:
             return NONE
         is_machine = at > 3
         if is_machine and name in (sequence(me.slots.get("$outcomes")) or ()):
-            name = Const(f"{name.value} (state)") if isinstance(name, Const) else name
+            name = Const(f"{name.value!s} (state)") if isinstance(name, Const) else name
         added = Added(
             label=name, state=state, span=span, kind="add" if is_machine else "concurrence",
             transitions=copied(arguments.get(3, "transitions")) if is_machine else None,

@@ -63,7 +63,7 @@ _NOTED = {
     ),
     BLACKBOARD: ("the values of the blackboard", "write them in `userdata` of the script"),
 }  # fmt: skip
-"""What is not taken over of calls that do not register functions, and what to do, by their names."""
+"""What is not taken over of calls that do not register functions, and what to do, by name."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,8 +1,8 @@
 """YASMIN: a Python module that builds the machine of YASMIN around the states of the SMACH program.
 
 The Python target prints the program with the classes of the states, those of YASMIN too;
-`<name>_yasmin.py` builds the containers over `runtime/yasmin/smachac_yasmin.py`. structure.py prints them, package.py the files
-of a package of ROS 2.
+`<name>_yasmin.py` builds the containers over `runtime/yasmin/smachac_yasmin.py`. structure.py
+prints them, package.py the files of a package of ROS 2.
 """
 
 from __future__ import annotations

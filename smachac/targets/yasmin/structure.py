@@ -62,9 +62,7 @@ def built(machine: Machine) -> list[str]:
     reached = {path: _reached(node) for path, node in containers(machine.root)}
     with deep_recursion():
         native = frozenset(native_types(machine))
-        lines += _container(
-            machine.root, machine.root.name, "", fresh, variables, reached, native
-        )
+        lines += _container(machine.root, machine.root.name, "", fresh, variables, reached, native)
     return [*lines, f"return {variables[machine.root.name]}"]
 
 
