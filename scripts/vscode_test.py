@@ -189,7 +189,7 @@ def use_python(editor: Editor) -> None:
     picture = page.frame_locator("iframe.webview").frame_locator("iframe#active-frame")
     picture.locator("svg .node:has-text('RIGHT')").wait_for()
     picture.locator("svg .node:has-text('LOOK')").click()
-    editor.at(8, 15)
+    editor.at(8, 1)
     print("the picture shows the states, and a click leads to the line")
 
     editor.open("parcels.py")
@@ -228,7 +228,7 @@ def main(node: str, code_server: str, extension: str, output: str) -> None:
     text = script.read_text("utf-8")
     script.write_text(text.replace("succeeded: LOAD_BLOCK", "succeeded: NOWHERE", 1), "utf-8")
     python = run / "python"
-    python.mkdir()
+    (python / ".git").mkdir(parents=True)  # a repository of its own
     for name, text in (("grippers", STATES), ("picking", PICKING), ("parcels", PARCELS)):
         (python / f"{name}.py").write_text(text, "utf-8")
     settings = run / "data" / "User" / "settings.json"

@@ -11,7 +11,7 @@ import hashlib
 import json
 import os
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -26,6 +26,7 @@ from smachac.diagnostics.diagnostic import (
 )
 from smachac.diagnostics.source import Source, Span
 from smachac.driver import CODES
+from smachac.frontend.files import PACKAGE
 from smachac.pysource.coverage import Coverage, UnknownPlace
 from smachac.records import dataclass
 from smachac.version import __version__
@@ -56,16 +57,21 @@ def cache_folder() -> Path | None:
 def digest_of(files: Iterable[tuple[str, str]]) -> str:
     """A digest of texts by name, of the version of Python, and of the files of smachac."""
     found = hashlib.sha256(f"{__version__} {sys.version}".encode())
-    package = Path(__file__).parent
+    for path in own_files(PACKAGE):
+        stat = os.stat(path)  # noqa: PTH116 (twice as fast)
+        found.update(f"{path} {stat.st_size} {stat.st_mtime_ns}\n".encode())
+    for name, text in files:
+        found.update(f"{name}\0{len(text)}\0{text}\0".encode("utf-8", "surrogatepass"))
+    return found.hexdigest()
+
+
+def own_files(package: Path) -> Iterator[str]:
+    """The paths of the Python files of a package, in the same order in each run."""
     for top, folders, names in os.walk(package):
         folders.sort()
         for name in sorted(names):
             if name.endswith(".py"):
-                stat = os.stat(Path(top, name))  # noqa: PTH116 (twice as fast)
-                found.update(f"{name} {stat.st_size} {stat.st_mtime_ns}\n".encode())
-    for name, text in files:
-        found.update(f"{name}\0{len(text)}\0{text}\0".encode("utf-8", "surrogatepass"))
-    return found.hexdigest()
+                yield os.path.join(top, name)  # noqa: PTH118 (twice as fast)
 
 
 class Cache:

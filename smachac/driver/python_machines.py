@@ -377,6 +377,8 @@ def _of_uses(faults: Sequence[UseFault]) -> Iterator[Diagnostic]:
                 yield errors.state_named_as_outcome(Word(name, fault.span))
             case "no such start state":
                 yield errors.no_start_state(Word(name, fault.span))
+            case _:
+                yield errors.wrong_call(fault.span, fault.kind, fault.names)
     for (_, module), words in members.items():
         yield errors.missing_member(module, words)
 

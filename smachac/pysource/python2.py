@@ -25,6 +25,7 @@ _PYTHON_2 = re.compile(
     r"|except[ \t]+[\w.()]+[ \t]*,[ \t]*\w+[ \t]*:)",
     re.M,
 )
+_FOR_PYTHON_3 = re.compile(r"#!.*\bpython3")
 _TABS = re.compile(r"^[ ]*\t[ \t]*", re.M)
 
 
@@ -57,8 +58,9 @@ def looks_like_python2(source: Source) -> bool:
 
 
 def python2_text(source: Source) -> PythonText | None:
-    """A text for Python 2; None if it is not valid. Raises NotInstalledError."""
-    if not is_readable(source.text):
+    """A text for Python 2; None if it is not valid, or if its first line names Python 3. Raises
+    NotInstalledError."""
+    if not is_readable(source.text) or _FOR_PYTHON_3.match(source.text):
         return None
     text = _TABS.sub(lambda found: found.group().expandtabs(8), source.text)
     try:

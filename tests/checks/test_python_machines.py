@@ -97,7 +97,7 @@ for name, cls in inspect.getmembers(module, inspect.isclass):
 """
 
 
-REFUSED = {"sm101", "sm102", "sm103", "sm104", "sm106", "sm301", "sm403"}
+REFUSED = {"sm101", "sm102", "sm103", "sm104", "sm106", "sm301", "sm403", "sm808"}
 """The codes with whose faults a machine ends with an error."""
 
 

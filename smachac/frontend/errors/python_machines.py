@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal
 
 from smachac.diagnostics.diagnostic import (
     MOST_RELATED,
@@ -10,10 +11,11 @@ from smachac.diagnostics.diagnostic import (
     Problem,
     Related,
     Severity,
+    did_you_mean,
     problem,
 )
 from smachac.diagnostics.source import Span, Word
-from smachac.diagnostics.wording import listed
+from smachac.diagnostics.wording import both, listed
 
 
 @problem(
@@ -285,6 +287,98 @@ def no_start_state(word: Word) -> Finding:
     )
 
 
+@problem(
+    "SM808",
+    "wrong-call",
+    Severity.ERROR,
+    unsuppressible=False,
+    effect="the call raises an exception: the program stops",
+)
+def wrong_call(span: Span, kind: CallFault, names: Sequence[str]) -> Finding:
+    """A call that builds a machine has arguments that the function does not accept.
+
+    An argument is missing, there is no parameter for one, a class is passed in place of a state, a
+    list in place of a dictionary, or a state is added by the method of another container.
+
+    Exactly: calls of functions and classes that were read, and of methods of SMACH, which are
+    always made: not under an unknown condition, and not in a `try` statement.
+
+    Wrong:
+        import smach
+
+
+        class Grip(smach.State):
+            def __init__(self, force):
+                smach.State.__init__(self, outcomes=["ok"])
+
+            def execute(self, userdata):
+                return "ok"
+
+
+        sm = smach.StateMachine(outcomes=["done"])
+        with sm:
+            smach.StateMachine.add("GRIP", Grip(), {"ok": "done"})
+
+    Right:
+        import smach
+
+
+        class Grip(smach.State):
+            def __init__(self, force):
+                smach.State.__init__(self, outcomes=["ok"])
+
+            def execute(self, userdata):
+                return "ok"
+
+
+        sm = smach.StateMachine(outcomes=["done"])
+        with sm:
+            smach.StateMachine.add("GRIP", Grip(5.0), {"ok": "done"})
+    """
+    message, help = _words_of_call(kind, names)
+    return Finding(span=span, message=message, arguments=(kind, *names), help=help)
+
+
+CallFault = Literal[
+    "unknown argument", "too many arguments", "missing argument", "class as state",
+    "no dictionary", "other container",
+]  # fmt: skip
+"""Why a call fails."""
+
+
+def _words_of_call(kind: CallFault, names: Sequence[str]) -> tuple[str, str]:
+    """The message and the help for a call that fails. `names` are the function and the argument
+    with the parameters, the missing arguments, or how many it takes and gets; the class; the
+    argument; or the method with its container and the one that is open."""
+    first, *others = names
+    match kind:
+        case "unknown argument":
+            word, *known = others
+            known = [name for name in known if name != "self"]
+            uses = f"use one of its parameters: {listed(known)}" if known else "remove the argument"
+            return f"`{first}` has no parameter `{word}`", did_you_mean(word, known) or uses
+        case "too many arguments":
+            most, given = others
+            count = f"{given} argument{'s' * (given != '1')} without a name"
+            message = f"`{first}` gets {count}, and takes at most {most}"
+            return message, "remove what is too much, or pass it by its name"
+        case "missing argument":
+            message = f"`{first}` requires {both(others)}"
+            return (
+                message,
+                f"pass a value, as in `{first}({others[0]}=...)`, or add a default value",
+            )
+        case "class as state":
+            return f"`{first}` is a class, not a state", f"write `{first}()`"
+        case "no dictionary":
+            return f"`{first}` is a list, not a dictionary", f"write `{first}={{'...': '...'}}`"
+        case "other container":
+            (found,) = others
+            message = f"the container that is open here is a {found}, not a {first}"
+            method = "set_contained_state" if found == "Iterator" else "add"
+            return message, f"use `smach.{found}.{method}`, or add the state in another `with`"
+
+
 PROBLEMS: tuple[Problem[...], ...] = (
     text_as_list,
     shared_transitions,
@@ -293,5 +387,6 @@ PROBLEMS: tuple[Problem[...], ...] = (
     unreadable_module,
     state_named_as_outcome,
     no_start_state,
+    wrong_call,
 )
 """The problems of this module, in the order of their codes."""

@@ -57,6 +57,7 @@ from smachac.pysource.machines.values import (
     sequence,
     truth,
 )
+from smachac.pysource.machines.wrong_calls import Signature, signature_of, wrong_call
 from smachac.pysource.syntax_tree import walk_code
 from smachac.records import dataclass, field
 
@@ -86,6 +87,7 @@ class Project(Protocol):
         self, evaluator: Evaluator, cls: LibraryClass, arguments: Arguments
     ) -> Value: ...
     def is_of_framework(self, cls: Value) -> bool: ...
+    def signature_of(self, method: Native) -> Signature | None: ...
     def may_set(self, name: str) -> bool: ...
 
 
@@ -104,7 +106,8 @@ class Evaluator:
     in the order in which they were made, `called` the functions that were called, `generators`
     whether one of them is a generator. `exhausted`: a part of the file took too many steps.
     `assumed` are the values of conditions that are not known, by their code, `used` those that were
-    needed."""
+    needed. `unsure`, `tries` and `guesses` count the conditions, the `try` statements and the calls
+    of one of several functions that the evaluation is in."""
 
     def __init__(self, project: Project, assumed: Mapping[str, bool] | None = None) -> None:
         self.project = project
@@ -123,6 +126,7 @@ class Evaluator:
         self.unsure = 0
         self.orphans = 0
         self.tries = 0
+        self.guesses = 0
         self.exhausted = False
         self.faults: list[UseFault] = []
         self.missed: set[tuple[int, str]] = set()
@@ -207,7 +211,7 @@ class Evaluator:
         self.opened.clear()
         self.regions.clear()
         self.calls.clear()
-        self.unsure = self.tries = 0
+        self.unsure = self.tries = self.guesses = 0
         self.exhausted = True
         self.heap.reset()
 
@@ -1387,15 +1391,23 @@ class Evaluator:
                 def branch(part: Value) -> Callable[[], None]:
                     return lambda: found.append(self.call(part, arguments, node, frame))
 
+                self.guesses += 1
                 self.choice([branch(part) for part in values])
+                self.guesses -= 1
                 return one_of(found)
             case Native():
+                signature = self.project.signature_of(function)
+                if signature is not None:
+                    name = function.name.partition(".")[2].removesuffix(".__init__")
+                    if self._judge(name, signature, arguments, span):
+                        arguments = replace(arguments, open=True)  # one of them is misspelt
                 return self._spent(function.run(self, arguments, span))
             case Method(function=inner, me=me):
                 return self.call(inner, arguments.with_first(me), node, frame)
             case Partial(function=inner, arguments=before):
                 return self.call(inner, before.followed_by(arguments), node, frame)
             case Function():
+                self._judge(_name_of(function), signature_of(function), arguments, span)
                 return self.run(function, arguments, Creation(node, frame, arguments))
             case Class() | LibraryClass():
                 return self.make(function, arguments, span, frame, node)
@@ -1405,6 +1417,21 @@ class Evaluator:
                     return self.call(inner, arguments, node, frame)
         self._escape(arguments, function)
         return function if isinstance(function, Unknown) and function.reason else UNKNOWN
+
+    @property
+    def is_certain(self) -> bool:
+        """Whether an exception would end the program here."""
+        return not (self.tries or self.guesses or self.unsure)
+
+    def _judge(
+        self, name: str, signature: Signature, arguments: Arguments, span: Span | None
+    ) -> bool:
+        """Whether Python refuses a call, which is noted."""
+        found = wrong_call(signature, arguments)
+        if found is not None and span is not None and self.is_certain:
+            kind, names = found
+            self.faults.append(UseFault(kind, span, (name, *names)))
+        return found is not None
 
     def partial(self, function: Value, arguments: Arguments) -> Value:
         """`functools.partial`; that of another one is one with the arguments of both."""
@@ -1464,7 +1491,8 @@ class Evaluator:
             self.generators[node] = isinstance(node, ast.AsyncFunctionDef) or _yields(node)
         if self.generators[node]:
             return UNKNOWN
-        slots = self._parameters(function, arguments)
+        is_root = made_by is None or made_by.node is None
+        slots = self._parameters(function, arguments, is_open=arguments.open or is_root)
         me = arguments.positional[0] if arguments.positional else None
         frame = Frame(slots, function.frame.module, function.frame, function, me, made_by=made_by)
         self.calls.append((function, self.adds))
@@ -1478,7 +1506,9 @@ class Evaluator:
             return NONE
         return end[1] if end[0] == "return" and end[1] is not LEFT else UNKNOWN
 
-    def _parameters(self, function: Function, arguments: Arguments) -> Slots:
+    def _parameters(self, function: Function, arguments: Arguments, *, is_open: bool) -> Slots:
+        """The values of the parameters; `is_open`: further arguments, for `*args` and `**others`,
+        are not known."""
         taken = function.node.args
         positional = [*taken.posonlyargs, *taken.args]
         slots: Slots = OwnSlots({})
@@ -1504,9 +1534,9 @@ class Evaluator:
             slots.setdefault(argument.arg, UNKNOWN)
         if taken.vararg is not None:
             more = TupleValue(tuple(given[len(positional) :]))
-            slots[taken.vararg.arg] = UNKNOWN if arguments.open else more
+            slots[taken.vararg.arg] = UNKNOWN if is_open else more
         if taken.kwarg is not None:
-            whole = DictValue({"items": UNKNOWN}) if arguments.open else self.new_dict(rest)
+            whole = DictValue({"items": UNKNOWN}) if is_open else self.new_dict(rest)
             slots[taken.kwarg.arg] = whole
         return slots
 
@@ -1575,6 +1605,12 @@ def _is_other(before: object, now: object) -> bool:
     if before is ABSENT or before is UNKNOWN or isinstance(before, Children):
         return False
     return now is not before and now != before
+
+
+def _name_of(function: Function) -> str:
+    """The name of a function as a caller knows it: that of the class for a constructor."""
+    owner = function.owner
+    return owner.name if owner is not None and function.name == "__init__" else function.name
 
 
 def _yields(node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda) -> bool:

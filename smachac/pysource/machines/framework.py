@@ -13,6 +13,7 @@ from smachac.pysource.machines.values import (
     NONE,
     UNKNOWN,
     Arguments,
+    Class,
     Const,
     DictValue,
     Instance,
@@ -26,6 +27,7 @@ from smachac.pysource.machines.values import (
     sequence,
     truth,
 )
+from smachac.pysource.machines.wrong_calls import Signature
 from smachac.records import dataclass, field
 
 Run = Callable[[Interpreter, Arguments, "Span | None"], Value]
@@ -39,7 +41,8 @@ class Framework:
     `packages` are its top packages, `modules` the names in its modules that the evaluator models, a
     module that is not listed being the top package that it is in. `methods` are the methods of its
     classes by full name (`smach.StateMachine`), `static` those that need no object, `parameters`
-    the parameters of the constructors in their order, where an import needs them. `containers` are
+    the parameters of the constructors in their order, where an import needs them, `signatures` the
+    parameters of methods by full name, of those that are the same in all versions. `containers` are
     the classes of containers; `adds` are the methods that add states, and a class that overrides
     one of `overridden` changes how they are added or run.
 
@@ -61,6 +64,7 @@ class Framework:
     static: frozenset[str] = frozenset()
     overridden: frozenset[str]
     parameters: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    signatures: Mapping[str, Signature] = field(default_factory=dict)
     jumps: bool = False
     effects: Mapping[str, str] | None = None
     code: str = ""
@@ -130,6 +134,7 @@ def add_child(evaluator: Interpreter, container: Value, added: Added) -> bool:
     children = container.slots.get("$children")
     if not isinstance(children, Children):
         return False
+    _judge(evaluator, added)
     whole = (*children.added, added)
     if len(whole) > MOST_STATES:
         whole = children.added
@@ -143,6 +148,18 @@ def add_child(evaluator: Interpreter, container: Value, added: Added) -> bool:
             if fault not in evaluator.faults:
                 evaluator.faults.append(fault)
     return True
+
+
+def _judge(evaluator: Interpreter, added: Added) -> None:
+    """Notes a class in place of a state, and other values in place of dictionaries."""
+    if not evaluator.is_certain:
+        return
+    if isinstance(added.state, Class | LibraryClass):
+        name = added.state.name.rpartition(".")[2]
+        evaluator.faults.append(UseFault("class as state", added.span, (name,)))
+    for name, value in (("transitions", added.transitions), ("remapping", added.remapping)):
+        if isinstance(value, ListValue | TupleValue) and sequence(value):
+            evaluator.faults.append(UseFault("no dictionary", added.span, (name,)))
 
 
 def copied(value: Value | None) -> Value | None:

@@ -20,6 +20,7 @@ from smachac.pysource.machines.values import (
     Unknown,
     Value,
 )
+from smachac.pysource.machines.wrong_calls import Signature
 from smachac.pysource.machines.yasmin_library import YASMIN
 
 FRAMEWORKS: tuple[Framework, ...] = (SMACH, YASMIN)
@@ -64,6 +65,12 @@ def method_of(cls: str, name: str) -> Native | None:
     run = methods.get(cls, {}).get(name)
     is_static = framework is not None and name in framework.static
     return Native(f"{cls}.{name}", run, is_static) if run is not None else None
+
+
+def signature_of_method(method: Native) -> Signature | None:
+    """The parameters of a method of a framework; None if they are not known."""
+    framework = _OF_PACKAGE.get(method.name.partition(".")[0])
+    return framework.signatures.get(method.name) if framework is not None else None
 
 
 def new_object(evaluator: Interpreter, cls: LibraryClass, arguments: Arguments) -> Value:

@@ -16,6 +16,7 @@ from smachac.pysource.machines.libraries import (
     method_of,
     new_object,
     of_framework,
+    signature_of_method,
 )
 from smachac.pysource.machines.values import (
     Arguments,
@@ -28,6 +29,7 @@ from smachac.pysource.machines.values import (
     UseFault,
     Value,
 )
+from smachac.pysource.machines.wrong_calls import Signature
 from smachac.pysource.python2 import NotInstalledError, python2_text
 from smachac.pysource.source import PythonText, python_text
 
@@ -66,6 +68,9 @@ class Repository:
 
     def method_of(self, cls: str, name: str) -> Native | None:
         return method_of(cls, name)
+
+    def signature_of(self, method: Native) -> Signature | None:
+        return signature_of_method(method)
 
     def is_of_framework(self, cls: Value) -> bool:
         return of_framework(cls) is not None

@@ -45,6 +45,7 @@ from smachac.pysource.machines.values import (
     alternatives,
     sequence,
 )
+from smachac.pysource.machines.wrong_calls import Signature, signature
 
 _READY = {
     "smach_ros.SimpleActionState": ("succeeded", "aborted", "preempted"),
@@ -212,6 +213,25 @@ def _one(value: Value) -> Value:
     return value
 
 
+_ACCEPTS: Mapping[str, tuple[str, ...]] = {
+    "add": ("StateMachine", "Sequence"),
+    "add_auto": ("StateMachine", "Sequence"),
+    "sequence": ("Sequence",),
+    "concurrence": ("Concurrence",),
+    "iterator": ("Iterator",),
+}
+"""The kinds of the containers to which each method adds states."""
+
+
+def _judge_container(evaluator: Interpreter, kind: str, span: Span) -> None:
+    """Notes a state that is added by the method of another container than the one opened last."""
+    container = evaluator.opened[-1]
+    found = container.slots.get("$kind") if isinstance(container, Instance) else None
+    if isinstance(found, Const) and found.value not in _ACCEPTS[kind] and evaluator.is_certain:
+        names = (_ACCEPTS[kind][-1 if kind == "sequence" else 0], str(found.value))
+        evaluator.faults.append(UseFault("other container", span, names))
+
+
 def _add(kind: str) -> Run:
     def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
         label, state = arguments.get(0, "label", UNKNOWN), arguments.get(1, "state", UNKNOWN)
@@ -234,6 +254,7 @@ def _add(kind: str) -> Run:
             return state or UNKNOWN
         if span is None:
             return state or UNKNOWN
+        _judge_container(evaluator, kind, span)
         added = Added(
             label=label or UNKNOWN, state=state or UNKNOWN, transitions=copied(transitions),
             remapping=copied(remapping), span=span, kind=kind, connector=connector, loop=loop,
@@ -429,6 +450,29 @@ _ROS_MODULE: Mapping[str, Value] = {
     "ActionServerWrapper": Native("nothing", lambda e, a, s: Unknown(reason="rospy")),
 }
 
+
+_KEYS = "input_keys output_keys"
+
+_SIGNATURES: Mapping[str, Signature] = {
+    "smach.StateMachine.__init__": signature("self outcomes", _KEYS),
+    "smach.Sequence.__init__": signature("self outcomes connector_outcome", _KEYS),
+    "smach.Concurrence.__init__": signature(
+        "self outcomes default_outcome", f"{_KEYS} outcome_map outcome_cb child_termination_cb"
+    ),
+    "smach.Iterator.__init__": signature(
+        "self outcomes input_keys output_keys", "it it_label exhausted_outcome"
+    ),
+    "smach.StateMachine.add": signature("label state", "transitions remapping"),
+    "smach.StateMachine.add_auto": signature(
+        "label state connector_outcomes", "transitions remapping"
+    ),
+    "smach.Sequence.add": signature("label state", "transitions remapping"),
+    "smach.Concurrence.add": signature("label state", "remapping"),
+    "smach.Iterator.set_contained_state": signature(
+        "label state", "loop_outcomes break_outcomes final_outcome_map"
+    ),
+}  # fmt: skip
+
 SMACH = Framework(
     name="SMACH",
     packages=("smach", "smach_ros"),
@@ -441,4 +485,5 @@ SMACH = Framework(
     overridden=frozenset(["add", "execute"]),
     parameters={**_PARAMETERS, **_OTHER_PARAMETERS},
     code="python",
+    signatures=_SIGNATURES,
 )  # fmt: skip

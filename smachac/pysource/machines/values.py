@@ -303,12 +303,15 @@ class Arguments:
 class Interpreter(Protocol):
     """The part of the evaluator that models of libraries use. `opened` are the containers that
     `with` has opened; `adds` counts all states that were added, `orphans` those to a container
-    of a caller."""
+    of a caller. `is_certain`: an exception would end the program here."""
 
     opened: list[Value]
     orphans: int
     adds: int
     faults: list[UseFault]
+
+    @property
+    def is_certain(self) -> bool: ...
 
     @property
     def heap(self) -> Heap: ...
@@ -332,7 +335,8 @@ class Heap(Protocol):
 
 UseKind = Literal[
     "text as list", "shared transitions", "missing member", "repeated key",
-    "state named as outcome", "no such start state",
+    "state named as outcome", "no such start state", "unknown argument", "too many arguments",
+    "missing argument", "class as state", "no dictionary", "other container",
 ]  # fmt: skip
 
 

@@ -41,6 +41,7 @@ from smachac.pysource.machines.values import (
     Value,
     sequence,
 )
+from smachac.pysource.machines.wrong_calls import signature
 
 OUTCOMES = {
     "SUCCEED": "succeeded", "ABORT": "aborted", "FAIL": "failed", "CANCEL": "canceled",
@@ -352,6 +353,11 @@ YASMIN = Framework(
     adds=frozenset(["add_state", "add_region"]),
     overridden=frozenset(["add_state", "add_region", "execute"]),
     parameters=_PARAMETERS,
+    signatures={
+        "yasmin.StateMachine.add_state": signature(
+            "self name state", "transitions remappings parameter_mappings"
+        ),
+    },
     jumps=True,
     code="yasmin",
     parts={"yasmin.JoinState": "it waits for another region of an orthogonal state"},

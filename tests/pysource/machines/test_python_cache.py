@@ -7,8 +7,11 @@ from pathlib import Path
 import pytest
 
 from smachac.commands.cli import main
-from smachac.driver.python_cache import cache_folder
+from smachac.driver import python_cache
+from smachac.driver.python_cache import cache_folder, own_files
 from smachac.driver.python_machines import PythonProject
+from smachac.frontend.files import PACKAGE
+from smachac.pysource.machines import evaluator
 
 MACHINE = """\
 import smach
@@ -125,4 +128,22 @@ def test_a_folder_that_cannot_be_written_is_no_fault(
     (folder.parent / "cache").write_text("a file in place of the folder")
     first = check(capsys)
     assert check(capsys) == first
+    assert len(read) == 2
+
+
+def test_a_change_of_smachac_counts(
+    folder: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    read: list[Path],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert evaluator.__file__ in own_files(PACKAGE)
+    package = tmp_path / "smachac"
+    (package / "pysource").mkdir(parents=True)
+    (package / "pysource" / "evaluator.py").write_text("STEPS = 1\n")
+    monkeypatch.setattr(python_cache, "PACKAGE", package)
+    check(capsys)
+    (package / "pysource" / "evaluator.py").write_text("STEPS = 100\n")
+    check(capsys)
     assert len(read) == 2

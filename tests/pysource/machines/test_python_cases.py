@@ -86,3 +86,18 @@ def test_python_2_without_the_extra_names_the_command_that_installs_it() -> None
     assert "warning[SM805]: this is code for Python 2" in done.stdout
     assert "pip install 'smachac[python2]'" in done.stdout
     assert done.stderr == ""
+
+
+TABS = "import smach\nsm = smach.StateMachine(['a'])\nif sm:\n        sm.open()\n\tsm.close()\n"
+
+
+@pytest.mark.parametrize(
+    ("first", "expected"), [("#!/usr/bin/env python", []), ("#!/usr/bin/env python3", ["SM805"])]
+)
+def test_tabs_and_spaces_are_no_fault_in_code_for_python_2(
+    first: str, expected: list[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "machine.py"
+    path.write_text(f"{first}\n{TABS}", "utf-8")
+    report = PythonProject(Disk()).read(path).report
+    assert [item.code for item in report] == expected

@@ -221,12 +221,16 @@ inner.add_state("B", Do("A"))
 sm.add_state("INNER", inner, {"over": "done"})
 """,
 }
+CALL = {
+    "class": 'sm.add_state("A", Do, {SUCCEED: "done"})  # !',
+    "name": 'sm.add_state("A", Do(), transition={SUCCEED: "done"})  # !',
+}
 KINDS = {
     "SM101": TARGET, "SM309 returns": RETURN, "SM201": UNREACHED, "SM309": NOTHING,
     "SM102": UNKNOWN_OUTCOME, "SM104": UNMAPPED, "SM806": OUTCOME_NAME, "SM106": TWICE,
-    "SM807": START, "SM202": NO_WAY_OUT,
+    "SM807": START, "SM202": NO_WAY_OUT, "SM808": CALL,
 }  # fmt: skip
-"""The ten kinds of faults, by code; `# !` marks the line of each."""
+"""Kinds of faults by code, the first ten as in docs/existing.md; `# !` marks the line of each."""
 CASES = [(kind, name) for kind, cases in KINDS.items() for name in cases]
 
 
