@@ -127,6 +127,121 @@ def test_the_program_has_the_containers_of_the_machine(
     compare_generated(checked, files, tmp_path / "out")
 
 
+HEAD = """\
+from yasmin import Blackboard, CbState, Concurrence, JoinState, OrthogonalState, State, StateMachine
+
+
+class Go(State):
+    def __init__(self, to=1):
+        super().__init__(["there"])
+
+
+sm = StateMachine(["end"])
+go = Go()
+sm.add_state("GO", go, {"there": "end"})
+"""
+
+LISTED = {
+    "parameter of a machine": ('sm.set_parameter("x", 1)', "the call of `set_parameter`"),
+    "parameters of states": ('sm.set_parameter_mappings("GO", {"x": "y"})',
+                             "the call of `set_parameter_mappings`"),
+    "unknown argument": ('import sys\ngo.set_parameter("x", len(sys.argv))',
+                         "the call of `set_parameter`"),
+    "condition": ('import sys\nif sys.argv:\n    go.set_parameter("x", 1)',
+                  "the call of `set_parameter`"),
+    "too many": ('for at in range(200):\n    go.set_parameter("x", at)',
+                 "the call of `set_parameter`"),
+    "callbacks": ("sm.add_start_cb(print)\nsm.add_transition_cb(print)",
+                  "the function of `add_transition_cb`"),
+    "blackboard": ("import sys\nsm(sys.argv)", "the values of the blackboard"),
+    "second blackboard": ('a, b = Blackboard(), Blackboard()\nb["x"] = 2\nsm(a)\nsm(b)',
+                          "the values of the blackboard"),
+    "value": ('import sys\na = Blackboard()\na["x"] = sys.argv\nsm(a)', "`x` is not known"),
+    "default of a machine that is not run": ('sm.add_input_key("x", "", 1)',
+                                             "the default value of a key"),
+    "default with `execute`": ('sm.add_input_key("x", "", 1)\nsm.execute(Blackboard())',
+                               "the default value of a key"),
+    "rules": ('sm.add_state("B", Concurrence({"A": Go(), "C": Go()}, "end",'
+              ' {"a": {"A": "there"}, "c": {"C": "there"}}), {"a": "end", "c": "end"})',
+              "can both hold"),
+}  # fmt: skip
+"""Code behind HEAD, and what the import lists for it."""
+
+
+@pytest.mark.parametrize("name", LISTED)
+def test_what_is_not_taken_over_is_listed(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, text = LISTED[name]
+    (tmp_path / ".git").mkdir()
+    monkeypatch.chdir(tmp_path)
+    Path("machine.py").write_text(f"{HEAD}{code}\n", "utf-8")
+    assert main(["import", "machine.py", "-o", "project", "-q"]) == 0
+    out = capsys.readouterr().out
+    assert text in out.replace("\n", " ")
+    assert "proof: the graph of main.yml is the graph of machine.py" in out
+    own = Path("project/imported_states.py")
+    assert not own.exists() or "set_parameter" not in own.read_text("utf-8")
+
+
+TAKEN = {
+    "two runs": ("sm()\nsm()", ""),
+    "two runs with an empty blackboard": ("sm(Blackboard())\nsm(Blackboard())", ""),
+    "copy": ('a = Blackboard()\nb = Blackboard(a)\nb["x"] = 1\na.set("y", 2)\na.remove("x")\nsm(b)',
+             'userdata: {"y": 2}'),
+    "default": ('sm.add_input_key("x", "", 1)\nsm.add_input_key("y", "", 2)\n'
+                'a = Blackboard()\na["y"] = 3\nsm(a)', 'userdata: {x: 1, "y": 3}'),
+    "key without a default": ('sm.add_input_key("x", "what it is")\nsm()', ""),
+    "calls that only describe": ('go.set_description("x")\nsm.add_output_key("x", "y")', ""),
+    "one rule": ('sm.add_state("B", Concurrence({"A": Go(), "C": Go()}, "end",'
+                 ' {"a": {"A": "there"}}), {"a": "end"})', "outcome_map: {a: {A: there}}"),
+}  # fmt: skip
+"""Code behind HEAD that loses nothing, and what the script has then."""
+
+
+@pytest.mark.parametrize("name", TAKEN)
+def test_what_is_taken_over(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, text = TAKEN[name]
+    (tmp_path / ".git").mkdir()
+    monkeypatch.chdir(tmp_path)
+    main_part = "".join(f"    {line}\n" for line in code.split("\n"))
+    Path("machine.py").write_text(f'{HEAD}if __name__ == "__main__":\n{main_part}', "utf-8")
+    assert main(["import", "machine.py", "-o", "project", "-q"]) == 0
+    assert "not taken over" not in capsys.readouterr().out
+    script = Path("project/main.yml").read_text("utf-8")
+    assert text in script
+    assert text or "userdata" not in script
+
+
+def test_a_class_that_waits_for_another_region_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    code = 'class Meet(JoinState):\n    pass\n\n\nsm.add_state("M", Meet("x"), {"joined": "end"})\n'
+    Path("machine.py").write_text(HEAD + code, "utf-8")
+    assert main(["import", "machine.py", "-o", "project"]) == 1
+    error = capsys.readouterr().err
+    assert "`sm` was not imported: no script can have what YASMIN has here" in error
+    assert ": `M`: it waits for another region of an orthogonal state" in error
+    assert not Path("project").exists()
+
+
+def test_a_second_import(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = {path: path.read_bytes() for path in project.rglob("*") if path.is_file()}
+    assert main(["import", "machine.py", "-o", "project"]) == 0
+    assert "project is up to date\n" in capsys.readouterr().out
+    assert before == {path: path.read_bytes() for path in project.rglob("*") if path.is_file()}
+    own = project / "imported_states.py"
+    own.write_text(own.read_text("utf-8") + "# mine\n", "utf-8")
+    machine = project.parent / "machine.py"
+    machine.write_text(machine.read_text("utf-8").replace('label="first"', 'label="new"'), "utf-8")
+    assert main(["import", "machine.py", "-o", "project"]) == 1
+    assert "project/imported_states.py was edited" in capsys.readouterr().err
+    assert "label: first" in (project / "main.yml").read_text("utf-8")
+
+
 # --- states of YASMIN in scripts
 
 GRASP = """\

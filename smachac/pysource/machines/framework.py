@@ -5,6 +5,7 @@ classes have in common.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.source import Span
@@ -183,6 +184,10 @@ def executed(evaluator: Interpreter, arguments: Arguments, span: Span | None) ->
     return UNKNOWN
 
 
+MOST_NOTED = 100
+"""The most calls that are noted for an object. If there are more, none of them is certain."""
+
+
 class Call(NamedTuple):
     """A call of a method of an object: its arguments are without the object. They are open if the
     call is not certain."""
@@ -199,8 +204,12 @@ def noted(name: str) -> Run:
         me = arguments.get(0, "self")
         if isinstance(me, Instance):
             given = Arguments(arguments.positional[1:], arguments.named, arguments.open)
-            calls = map(_as_value, (*noted_of(me), Call(name, given, span)))
-            evaluator.heap.set(me.slots, "$noted", TupleValue(tuple(calls)))
+            calls = [*noted_of(me), Call(name, given, span)]
+            if len(calls) > MOST_NOTED:
+                known = (replace(call.arguments, open=True) for call in calls[:MOST_NOTED])
+                calls = [call._replace(arguments=given)
+                         for call, given in zip(calls, known, strict=False)]  # fmt: skip
+            evaluator.heap.set(me.slots, "$noted", TupleValue(tuple(map(_as_value, calls))))
         return NONE
 
     return run
