@@ -215,6 +215,30 @@ def test_what_is_taken_over(
     assert text or "userdata" not in script
 
 
+def test_states_of_unknown_classes_in_a_concurrence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Their outcomes are those in the rules, and their classes those that the file imports."""
+    monkeypatch.chdir(tmp_path)
+    Path("machine.py").write_text(
+        "from arm_states import Drive, Grip\n"
+        "from yasmin import Concurrence, StateMachine\n\n"
+        'sm = StateMachine(["end"])\n'
+        'pair = Concurrence({"A": Drive(speed=2), "B": Grip()}, "no", {"got": {"A": "there",\n'
+        '                   "B": "held"}})\n'
+        'sm.add_state("PAIR", pair, {"got": "end", "no": "end"})\n',
+        "utf-8",
+    )
+    assert main(["import", "machine.py", "-o", "project", "-q"]) == 0
+    assert "not taken over" not in capsys.readouterr().out
+    drive = Path("project/templates/Drive.yml").read_text("utf-8")
+    assert "variables: {speed: {}}\n" in drive
+    assert "outcomes: {there: {}}\n" in drive
+    assert 'code: {yasmin: "arm_states:Drive"}\n' in drive
+    assert "outcomes: {held: {}}\n" in Path("project/templates/Grip.yml").read_text("utf-8")
+    assert main(["check", "project/main.yml", "-q"]) == 0
+
+
 def test_a_class_that_waits_for_another_region_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

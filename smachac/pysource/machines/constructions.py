@@ -335,10 +335,7 @@ class _Reader:
     def _unknown_state(self, span: Span) -> Construction:
         """A state of a class that is not known: what its code shows of it."""
         text = self._text_of(span)
-        nodes = walk_code(text.tree) if text is not None else ()
-        add = next((node for node in nodes if isinstance(node, ast.Call) and text is not None
-                    and text.span(node) == span), None)  # fmt: skip
-        made = _argument_of(add, 1, "state") if add is not None else None
+        made = _object_at(text, span) if text is not None else None
         if not isinstance(made, ast.Call) or text is None:
             return Construction(span=span, obstacle="its class is not known")
         place = _imported(text.tree, made.func)
@@ -700,6 +697,18 @@ def _written(made: Instance) -> dict[int | str, ast.expr]:
         return {}
     found: dict[int | str, ast.expr] = dict(enumerate(node.args))
     return found | {part.arg: part.value for part in node.keywords if part.arg is not None}
+
+
+def _object_at(text: PythonText, span: Span) -> ast.expr | None:
+    """The object of a state: in the call that adds it, or behind its name in a dictionary."""
+    for node in walk_code(text.tree):
+        if isinstance(node, ast.Call) and text.span(node) == span:
+            return _argument_of(node, 1, "state")
+        if isinstance(node, ast.Dict):
+            for key, value in zip(node.keys, node.values, strict=True):
+                if key is not None and text.span(key) == span:
+                    return value
+    return None
 
 
 def _argument_of(call: ast.Call, at: int, name: str) -> ast.expr | None:

@@ -4,7 +4,7 @@ classes have in common.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -219,7 +219,7 @@ def noted_of(me: Instance) -> list[Call]:
     """The calls that are noted for an object."""
     held = alternatives(me.slots.get("$noted", TupleValue(())))
     found = dict.fromkeys(call for calls in held for call in sequence(calls) or ())
-    return [_as_call(call, certain=len(held) == 1) for call in found]
+    return [*_calls(found, certain=len(held) == 1)]
 
 
 def _as_value(call: Call) -> Value:
@@ -231,13 +231,15 @@ def _as_value(call: Call) -> Value:
     return TupleValue((Const(name, span), given, words, values, Const(arguments.open)))
 
 
-def _as_call(value: Value, *, certain: bool) -> Call:
-    name, given, words, values, is_open = sequence(value) or ()
-    pairs = zip(sequence(words) or (), sequence(values) or (), strict=True)
-    named = tuple((str(getattr(word, "value", "")), part) for word, part in pairs)
-    is_open = Const(not certain or truth(is_open) is True)
-    arguments = Arguments(sequence(given) or (), named, truth(is_open) is True)
-    return Call(str(getattr(name, "value", "")), arguments, getattr(name, "span", None))
+def _calls(values: Iterable[Value], *, certain: bool) -> Iterator[Call]:
+    for value in values:
+        match sequence(value):
+            case (Const(value=str() as name, span=span), given, words, held, is_open):
+                names = (str(getattr(word, "value", "")) for word in sequence(words) or ())
+                named = zip(names, sequence(held) or (), strict=True)
+                more = not certain or truth(is_open) is True
+                arguments = Arguments(sequence(given) or (), tuple(named), more)
+                yield Call(name, arguments, span)
 
 
 def userdata_of(container: Instance) -> Value | None:

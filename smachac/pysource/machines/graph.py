@@ -131,6 +131,7 @@ class _Builder:
         self.states = 0
         self.nodes = 0
         self.path: list[Instance] = []
+        self.in_rules: list[Mapping[str, Sequence[str]]] = []
         self.names_above: list[str] = []
         self.objects: dict[tuple[str, ...], Instance] = {}
 
@@ -182,10 +183,12 @@ class _Builder:
         if inside:
             added = ()
         self.path.append(made)
+        self.in_rules.append(_outcomes_in_rules(made))
         self.names_above.append(name)
         self.objects[tuple(self.names_above)] = made
         node = self._built(made, name, span, depth, added, assumed, complete=complete)
         self.names_above.pop()
+        self.in_rules.pop()
         self.path.pop()
         return node
 
@@ -443,12 +446,14 @@ class _Builder:
     def open_leaf(
         self, name: str, span: Span, added: Added, reason: str, facts: ClassFacts | None = None
     ) -> Leaf:
-        """A state of an unknown type: its outcomes are those of a comment, or of its
-        transitions."""
+        """A state of an unknown type: its outcomes are those of a comment, or of its transitions
+        and the rules of its concurrence."""
         note = self.reader.comments.at(span)
         if note.outcomes is None:
             self.unknown.append((span, reason))
-            outcomes = tuple(Outcome(name=text, span=span) for text in _outcomes_of(added))
+            in_rules = self.in_rules[-1].get(name, ()) if self.in_rules else ()
+            named = dict.fromkeys([*_outcomes_of(added), *in_rules])
+            outcomes = tuple(Outcome(name=text, span=span) for text in named)
         else:
             outcomes = tuple(Outcome(name=word.text, span=word.span) for word in note.outcomes)
         type_ = facts.name.text if facts is not None and facts.name is not None else ELSEWHERE
@@ -701,6 +706,17 @@ def _outcomes_of(added: Added) -> list[str]:
     """The outcomes that the transitions of a state name."""
     items = added.transitions.items if isinstance(added.transitions, DictValue) else {}
     return [str(key) for key in items] if isinstance(items, Mapping) else []
+
+
+def _outcomes_in_rules(made: Instance) -> dict[str, list[str]]:
+    """The outcomes that the rules of a concurrence name, by state."""
+    found: dict[str, list[str]] = {}
+    mapping = made.slots.get("$outcome_map")
+    items = mapping.items if isinstance(mapping, DictValue) else {}
+    for _, value in items.values() if isinstance(items, Mapping) else ():
+        for one in _conditions(value) or ():
+            found.setdefault(one.child, []).append(one.outcome)
+    return found
 
 
 def _one_for_each_name(added: Sequence[Added]) -> list[Added]:
