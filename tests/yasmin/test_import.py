@@ -184,6 +184,15 @@ def test_what_is_not_taken_over_is_listed(
     assert not own.exists() or "set_parameter" not in own.read_text("utf-8")
 
 
+def test_calls_keep_their_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    calls = [f'go.set_parameter("x", {number})\n' for number in (1, 2, 1)]
+    Path("machine.py").write_text(HEAD + "".join(calls), "utf-8")
+    main(["import", "machine.py", "-o", "project", "-q"])
+    written = Path("project/imported_states.py").read_text("utf-8")
+    assert [line[-2] for line in written.split("\n") if "set_parameter" in line] == ["1", "2", "1"]
+
+
 TAKEN = {
     "two runs": ("sm()\nsm()", ""),
     "two runs with an empty blackboard": ("sm(Blackboard())\nsm(Blackboard())", ""),

@@ -217,9 +217,10 @@ def noted(name: str) -> Run:
 
 def noted_of(me: Instance) -> list[Call]:
     """The calls that are noted for an object."""
-    held = alternatives(me.slots.get("$noted", TupleValue(())))
-    found = dict.fromkeys(call for calls in held for call in sequence(calls) or ())
-    return [*_calls(found, certain=len(held) == 1)]
+    held = [sequence(calls) or () for calls in alternatives(me.slots.get("$noted", TupleValue(())))]
+    if len(held) == 1:
+        return [*_calls(held[0], certain=True)]
+    return [*_calls(dict.fromkeys(call for calls in held for call in calls), certain=False)]
 
 
 def _as_value(call: Call) -> Value:
