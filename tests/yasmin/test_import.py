@@ -145,6 +145,11 @@ LISTED = {
     "parameter of a machine": ('sm.set_parameter("x", 1)', "the call of `set_parameter`"),
     "parameters of states": ('sm.set_parameter_mappings("GO", {"x": "y"})',
                              "the call of `set_parameter_mappings`"),
+    "mappings of a state": ('sm.add_state("B", Go(), {"there": "end"}, {}, {"x": "y"})',
+                            "the call of `set_parameter_mappings`"),
+    "mappings of a concurrence": ('sm.add_state("B", Concurrence({"A": Go()}, "end",'
+                                  ' parameter_mappings={"A": {"x": "y"}}))',
+                                  "the call of `set_parameter_mappings`"),
     "unknown argument": ('import sys\ngo.set_parameter("x", len(sys.argv))',
                          "the call of `set_parameter`"),
     "condition": ('import sys\nif sys.argv:\n    go.set_parameter("x", 1)',
@@ -182,6 +187,22 @@ def test_what_is_not_taken_over_is_listed(
     assert "proof: the graph of main.yml is the graph of machine.py" in out
     own = Path("project/imported_states.py")
     assert not own.exists() or "set_parameter" not in own.read_text("utf-8")
+
+
+def test_the_node_of_a_state_is_an_argument(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("machine.py").write_text(
+        "from yasmin import StateMachine\nfrom yasmin_ros import GetParametersState\n\n\n"
+        'def build(node):\n    sm = StateMachine(["end"])\n'
+        '    state = GetParametersState({"x": 1}, node=node)\n'
+        '    sm.add_state("B", state, {"succeeded": "end", "aborted": "end"})\n',
+        "utf-8",
+    )
+    assert main(["import", "machine.py", "-o", "project", "-q"]) == 0
+    assert "node: [params, node]" in Path("project/main.yml").read_text("utf-8")
+    assert "NotImplementedError" not in Path("project/imported_states.py").read_text("utf-8")
 
 
 def test_calls_keep_their_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

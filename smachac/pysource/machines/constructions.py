@@ -29,7 +29,7 @@ from smachac.pysource.machines.graph import Graph
 from smachac.pysource.machines.libraries import parameters_of
 from smachac.pysource.machines.origins import Origins
 from smachac.pysource.machines.project import Repository
-from smachac.pysource.machines.smach_library import takes_node
+from smachac.pysource.machines.smach_library import SMACH, takes_node
 from smachac.pysource.machines.values import (
     Arguments,
     Class,
@@ -267,7 +267,8 @@ class _Reader:
             return self._of_class(made, made.cls, span, around)
         found = self._arguments(made, around)
         named = {argument.name: argument for argument in found}
-        if "node" in named:
+        node = "node" in named and self.graph.framework is SMACH
+        if node:
             found = tuple(argument for argument in found if argument.name != "node")
         callback = next((argument for argument in found if argument.name.endswith(_FUNCTIONS)
                          and not argument.is_known), None)  # fmt: skip
@@ -275,7 +276,7 @@ class _Reader:
         short = _short(named.get("cb") or named.get("callback"), made.cls.short)
         return Construction(
             span=span, library=made.cls.name, short=short,
-            arguments=found, obstacle=obstacle, types=self._types(made), node="node" in named,
+            arguments=found, obstacle=obstacle, types=self._types(made), node=node,
         )  # fmt: skip
 
     def _of_class(

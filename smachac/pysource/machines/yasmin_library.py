@@ -162,6 +162,7 @@ def _concurrence(at: int) -> Run:
         make_container(evaluator, me, "Concurrence")
         evaluator.heap.set(me.slots, "$default_outcome", default)
         evaluator.heap.set(me.slots, "$outcome_map", rules)
+        _note_mappings(evaluator, arguments, at + 2, span)
         if at > 1:
             _add_states(evaluator, me, arguments.get(1, "states", UNKNOWN), span or me.span)
         return NONE
@@ -186,6 +187,14 @@ def _add_states(
         add_child(evaluator, me, added)
 
 
+def _note_mappings(
+    evaluator: Interpreter, arguments: Arguments, at: int, span: Span | None
+) -> None:
+    """Notes the argument with mappings of parameters, if there is one."""
+    if arguments.get(at, "parameter_mappings") is not None:
+        noted("set_parameter_mappings")(evaluator, arguments, span)
+
+
 def _add(kind: str) -> Run:
     """A method that adds a state: its name, the state, and for a state machine the transitions."""
 
@@ -200,6 +209,8 @@ def _add(kind: str) -> Run:
         added = Added(label=name, state=state, transitions=copied(transitions),
                       remapping=copied(remapping), span=span, kind=kind)  # fmt: skip
         add_child(evaluator, me, added)
+        if kind == "add":
+            _note_mappings(evaluator, arguments, 5, span)
         outcomes = sequence(me.slots.get("$outcomes")) or ()
         if kind == "add" and isinstance(name, Const) and name in outcomes:
             _refuse(evaluator, "state named as outcome", name, span)
