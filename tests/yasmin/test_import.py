@@ -413,6 +413,55 @@ def test_a_request_reaches_the_state_that_runs(arm: Callable[..., Path]) -> None
         assert seen == [(1, False), (2, True), (3, False), (4, False)]
 
 
+WAITING = """\
+import threading
+
+from yasmin import State
+
+
+class Grasp(State):
+    def __init__(self, times=1, fails=False):
+        super().__init__(outcomes=["held", "lost"])
+        self.end = threading.Event()
+
+    def cancel_state(self):
+        super().cancel_state()
+        self.end.set()
+
+    def execute(self, blackboard):
+        self.end.wait()
+        return "held"
+"""
+
+
+def test_a_time_limit_cancels_the_state(arm: Callable[..., Path]) -> None:
+    script = arm(
+        "name: pick\noutcomes: [done, late, preempted]\nstates:\n"
+        "- WAIT: {template: Grasp, timeout: 0.01,\n"
+        "    transitions: {held: done, lost: done, timeout: late, preempted: preempted}}\n"
+    )
+    (script.parent / "arm.py").write_text(WAITING, "utf-8")
+    with loaded(files_of(script)) as module:
+        assert module.run().execute() == "late"
+
+
+def test_sugar_around_a_state(arm: Callable[..., Path]) -> None:
+    """The item of a loop is a key that the script lists."""
+    files = files_of(arm(
+        "name: pick\noutcomes: [done, failed, preempted]\n"
+        "userdata: {parts: [1, 2], part: 5, log: []}\nstates:\n"
+        "- EACH: {template: Grasp, for_each: {item: part, in: parts, on: [held]}, "
+        "input_keys: [part],\n"
+        "    transitions: {held: AGAIN, lost: failed, preempted: preempted}}\n"
+        "- AGAIN: {template: Grasp, retry: {max: 2, on: [held]},\n"
+        "    transitions: {exhausted: done, lost: failed, preempted: preempted}}\n"
+    ))  # fmt: skip
+    with loaded(files) as module:
+        run = module.run()
+        assert run.execute() == "done"
+        assert values(run.blackboard)["log"] == ["1 1", "1 2", "1 5", "1 50"]
+
+
 @pytest.mark.parametrize(
     ("text", "help"),
     [
