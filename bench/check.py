@@ -179,7 +179,7 @@ class Laps:
 
 def phases(path: str) -> dict[str, float]:
     """CPU seconds of each phase and rule, and of `check` as a whole, without its start-up."""
-    from smachac.checks import RULES, check_machine
+    from smachac import checks
     from smachac.diagnostics.diagnostic import Report, in_order
     from smachac.diagnostics.severities import apply_severities
     from smachac.driver import CODES
@@ -209,9 +209,9 @@ def phases(path: str) -> dict[str, float]:
         laps("lower")
         rules = [
             replace(rule, function=partial(timed, rule.function, laps, rule.code.code))
-            for rule in RULES
+            for rule in checks.rules()
         ]
-        report += check_machine(machine, tuple(rules))
+        report += checks.check_machine(machine, tuple(rules))
         parse = library.parse
         given = [fit for text in texts for fit in suppressions_in(text, report, CODES, parse)]
         report = apply_severities(in_order(apply_suppressions(report, given)[0]), library.policy)

@@ -189,11 +189,11 @@ def run(
     `observe` is called with each event of the trace when it happens. `seed` is the seed of the
     simulated world and of `random`. Raises ScriptError, and every exception of the program.
     """
-    from dataclasses import replace
     from pathlib import Path
 
     from smachac.driver import compile_script
     from smachac.frontend.files import module_folders
+    from smachac.records import replace
     from smachac.targets.python import TARGET
     from smachac.targets.python.runner import PythonProgram, execute
 

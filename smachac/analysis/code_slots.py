@@ -8,7 +8,6 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping, Sequence
 
-from smachac.analysis.expression_types import RESULTS
 from smachac.ir import nodes
 from smachac.ir.nodes import (
     Expression,
@@ -116,6 +115,8 @@ def is_value(tree: ast.expr) -> bool:
         case ast.Lambda() | ast.Name() | ast.Attribute() | ast.Subscript() | ast.Await():
             return False
         case ast.Call(func=ast.Name(id=name)):
+            from smachac.analysis.expression_types import RESULTS
+
             return name in RESULTS
         case ast.Call() | ast.NamedExpr():
             return False

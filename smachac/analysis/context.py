@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias, TypeVar, cast
 
-from smachac.analysis.accesses import Accesses, accesses
 from smachac.analysis.code_slots import CodeSlot, code_slots
 from smachac.analysis.control_flow import (
     Linear,
@@ -16,35 +15,33 @@ from smachac.analysis.control_flow import (
     outline,
     stuck_states,
 )
-from smachac.analysis.definite_assignment import DataFlow, data_flow
-from smachac.analysis.error_recovery import absorbed_keys, absorbed_machine
-from smachac.analysis.expression_errors import Fault
-from smachac.analysis.expression_sites import ExpressionSite, faulty_sites
-from smachac.analysis.failure_paths import Failure, failures
-from smachac.analysis.filled_lists import filled_loops
 from smachac.analysis.incremental_facts import Fact, IncrementalResult, Preorder, found_at
-from smachac.analysis.item_reads import ItemRead, item_reads
-from smachac.analysis.loaded_bodies import LoadingOrder, bodies_loaded
-from smachac.analysis.lost_outputs import Lost, lost_outputs
-from smachac.analysis.possible_outcomes import Endings, Judged, endings, judged
-from smachac.analysis.reaching_values import reaching_clashes
-from smachac.analysis.resource_claims import Held, claims
-from smachac.analysis.stop_paths import StopPaths, stop_paths
-from smachac.analysis.successors import Routes
-from smachac.analysis.type_inference import Clash, Types, infer
-from smachac.analysis.type_lattice import MisfitKind
-from smachac.analysis.unset_reads import Cause, Missing, missing_keys
-from smachac.diagnostics.source import Span
-from smachac.ir import nodes, script_paths, traversal
-from smachac.ir import written as written_states
-from smachac.ir.class_facts import ClassFacts
+from smachac.ir import nodes, traversal
 from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine, StateType
-from smachac.ir.script_paths import PlainPaths
-from smachac.ir.secret_keys import SecretKeys, secret_keys
 from smachac.pysource.user_code import CodeFacts, ProjectCode
 
 if TYPE_CHECKING:
+    from smachac.analysis.accesses import Accesses
+    from smachac.analysis.definite_assignment import DataFlow
+    from smachac.analysis.expression_errors import Fault
+    from smachac.analysis.expression_sites import ExpressionSite
+    from smachac.analysis.failure_paths import Failure
+    from smachac.analysis.item_reads import ItemRead
+    from smachac.analysis.loaded_bodies import LoadingOrder
+    from smachac.analysis.lost_outputs import Lost
+    from smachac.analysis.possible_outcomes import Endings, Judged
     from smachac.analysis.properties import Judgement
+    from smachac.analysis.resource_claims import Held
+    from smachac.analysis.stop_paths import StopPaths
+    from smachac.analysis.successors import Routes
+    from smachac.analysis.type_inference import Clash, Types
+    from smachac.analysis.type_lattice import MisfitKind
+    from smachac.analysis.unset_reads import Cause, Missing
+    from smachac.diagnostics.source import Span
+    from smachac.ir.class_facts import ClassFacts
+    from smachac.ir.script_paths import PlainPaths
+    from smachac.ir.secret_keys import SecretKeys
+    from smachac.ir.written import Written
 
 C = TypeVar("C")
 T = TypeVar("T")
@@ -57,8 +54,9 @@ class Context:
     """The analysis results of one machine.
 
     Rules and explanations receive a context. The analyses are plain functions in the other modules
-    of this package: they take what they need, and none of them imports this module. Results are
-    shared, so nobody may change them.
+    of this package: they take what they need, and none of them imports this module. They are
+    imported where they are needed first: no machine needs all. Results are shared, so nobody may
+    change them.
     """
 
     def __init__(
@@ -205,37 +203,53 @@ class Context:
     @cached_property
     def script_paths(self) -> dict[str, str]:
         """The paths of the script by full path; only those that differ."""
-        return script_paths.script_paths(self.machine.root)
+        from smachac.ir.script_paths import script_paths
+
+        return script_paths(self.machine.root)
 
     @cached_property
-    def written(self) -> written_states.Written:
+    def written(self) -> Written:
         """The states as they were written."""
-        return written_states.written(self.machine)
+        from smachac.ir.written import written
+
+        return written(self.machine)
 
     @cached_property
     def plain_paths(self) -> PlainPaths:
         """The paths of the script without roles, by full path; only those that differ."""
-        return script_paths.plain_paths(self.machine.root)
+        from smachac.ir.script_paths import plain_paths
+
+        return plain_paths(self.machine.root)
 
     @cached_property
     def secret_keys(self) -> SecretKeys:
         """The secret keys of each state, by path."""
+        from smachac.ir.secret_keys import secret_keys
+
         return secret_keys(self.machine)
 
     @cached_property
     def types(self) -> Types:
         """The types of userdata."""
+        from smachac.analysis.type_inference import infer
+
         return infer(self.machine)
 
     @cached_property
     def _reaching(self) -> dict[MisfitKind, list[Clash]]:
+        from smachac.analysis.reaching_values import reaching_clashes
+
         return reaching_clashes(self.types.clashes)
 
     @cached_property
     def item_reads(self) -> tuple[ItemRead, ...]:
         """The reads of the list of a loop that mean its item."""
         found = [clash for some in self._reaching.values() for clash in some]
-        return tuple(item_reads(found, dict(self.containers))) if found else ()
+        if not found:
+            return ()
+        from smachac.analysis.item_reads import item_reads
+
+        return tuple(item_reads(found, dict(self.containers)))
 
     @cached_property
     def clashes(self) -> dict[MisfitKind, list[Clash]]:
@@ -249,20 +263,33 @@ class Context:
     @cached_property
     def expression_faults(self) -> list[tuple[ExpressionSite, Fault]]:
         """The type errors in the code of the script."""
+        if not self.code_slots and not any(
+            True for _, state in self.states for _ in traversal.expressions(state)
+        ):
+            return []
+        from smachac.analysis.expression_sites import faulty_sites
+
         return [*faulty_sites(self._with_values.nodes, self.types, self.machine.state_types)]
 
     @cached_property
     def _filled_loops(self) -> frozenset[str]:
+        from smachac.analysis.filled_lists import filled_loops
+
         return filled_loops(self.containers, self.accesses)
 
     @cached_property
     def flow(self) -> DataFlow:
         """The data flow of the machine as written."""
+        from smachac.analysis.definite_assignment import data_flow
+
         return data_flow(self.machine, self._scopes, self._filled_loops)
 
     @cached_property
     def absorbed_flow(self) -> DataFlow:
         """The data flow of the machine with unknown names absorbed."""
+        from smachac.analysis.definite_assignment import data_flow
+        from smachac.analysis.error_recovery import absorbed_machine
+
         machine = absorbed_machine(self.machine, self.containers, self._absorbed_container)
         return (
             self.flow
@@ -271,6 +298,8 @@ class Context:
         )
 
     def _absorbed_container(self, path: str, container: Container) -> Container:
+        from smachac.analysis.error_recovery import absorbed_keys
+
         whole = self.of_container(absorbed_keys, path, container)
         if isinstance(whole, StateMachine | nodes.Sequence):
             return self.of_container(absorbed, path, whole)
@@ -278,6 +307,8 @@ class Context:
 
     @cached_property
     def _missing_keys(self) -> tuple[Missing, ...]:
+        from smachac.analysis.unset_reads import missing_keys
+
         return missing_keys(self.absorbed_flow)
 
     def missing_keys(self, *causes: Cause) -> list[Missing]:
@@ -287,16 +318,22 @@ class Context:
     @cached_property
     def lost_outputs(self) -> tuple[Lost, ...]:
         """The keys that are written in a container, needed outside, and not handed out."""
+        from smachac.analysis.lost_outputs import lost_outputs
+
         return lost_outputs(self.absorbed_flow, self.missing_keys("lost"), self.of_container)
 
     @cached_property
     def accesses(self) -> dict[str, Accesses]:
         """What each state reads and writes of the userdata around it."""
+        from smachac.analysis.accesses import accesses
+
         return accesses(self.states)
 
     @cached_property
     def claims(self) -> Held:
         """The resources that each state holds while it runs."""
+        from smachac.analysis.resource_claims import claims
+
         return claims(self.states, self.containers, self.accesses)
 
     @cached_property
@@ -319,16 +356,22 @@ class Context:
     @cached_property
     def endings(self) -> Endings:
         """The outcomes that states in concurrences can end with."""
+        from smachac.analysis.possible_outcomes import endings
+
         return endings(self.states)
 
     @cached_property
     def judged(self) -> list[Judged]:
         """The concurrences whose rules can be judged."""
+        from smachac.analysis.possible_outcomes import judged
+
         return judged(self.containers, self.endings)
 
     @cached_property
     def stop_paths(self) -> StopPaths:
         """Where the machine continues after a stop."""
+        from smachac.analysis.stop_paths import stop_paths
+
         judged = {other.path: other for other in self.judged}
 
         def holds(path: str) -> bool:
@@ -339,17 +382,23 @@ class Context:
     @cached_property
     def routes(self) -> Routes:
         """The control flow of the whole machine."""
+        from smachac.analysis.successors import Routes
+
         return Routes(self.states, self.endings)
 
     @cached_property
     def bodies_loaded(self) -> Mapping[str, str] | None:
         """The states that load a body into the simulated world, each with the name of the body;
         None where they are not known."""
+        from smachac.analysis.loaded_bodies import bodies_loaded
+
         return bodies_loaded(self.states)
 
     @cached_property
     def loading_order(self) -> LoadingOrder:
         """The states that can run before the bodies of the simulated world are loaded."""
+        from smachac.analysis.loaded_bodies import LoadingOrder
+
         return LoadingOrder(self.routes, self.bodies_loaded or {})
 
     @cached_property
@@ -381,6 +430,8 @@ class Context:
     @cached_property
     def failures(self) -> tuple[Failure, ...]:
         """Every failure that can begin, with where it leads."""
+        from smachac.analysis.failure_paths import failures
+
         return tuple(failures(self.states, self.routes, self.plain_paths))
 
 

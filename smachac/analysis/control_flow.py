@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
@@ -19,6 +18,7 @@ from smachac.ir.graph import START, can_end, edges, reachable
 from smachac.ir.nodes import Concurrence, Leaf, Node, Outcome, StateMachine, Transition
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import leads_to_child, outcome_names
+from smachac.records import replace
 
 if TYPE_CHECKING:
     import networkx as nx

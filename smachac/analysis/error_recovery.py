@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from collections.abc import Sequence as PathSequence
 from collections.abc import Set as AbstractSet
-from dataclasses import replace
 from operator import is_
 from typing import cast
 
@@ -28,6 +27,7 @@ from smachac.ir.nodes import (
 from smachac.ir.script_code import script_code
 from smachac.ir.traversal import outcome_names, outer_inputs, outer_outputs
 from smachac.ir.types import ANY, Type
+from smachac.records import replace
 
 
 def unknown_remaps(node: Node) -> list[Remap]:

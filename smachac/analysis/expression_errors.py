@@ -11,7 +11,6 @@ import itertools
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from typing import Literal, NamedTuple, TypeAlias
 
 from smachac.analysis.expression_types import ATTRIBUTES, Names, body_of, keys_named, type_of
@@ -46,7 +45,7 @@ from smachac.ir.expressions import (
 from smachac.ir.nodes import Expression
 from smachac.ir.script_code import script_code
 from smachac.ir.types import Type
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 
 FaultKind: TypeAlias = Literal["operation", "comparison", "unit", "doubt"]
 """The operation fails; the result of the comparison is always the same; the units differ; a number

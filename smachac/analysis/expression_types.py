@@ -7,15 +7,15 @@ fits every type that three numbers can be written for.
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 
 from smachac.analysis.type_lattice import (
     BOOL,
+    DEEPEST,
     DICT,
     FLOAT,
     INT,
     LIST,
-    NONE,
     POINT,
     QUATERNION,
     STR,
@@ -25,8 +25,11 @@ from smachac.analysis.type_lattice import (
     items,
     joined,
     mapping,
+    mapping_type,
     plain,
     present,
+    tuple_type,
+    type_of_literal,
     unit_of,
     widened,
 )
@@ -50,57 +53,14 @@ from smachac.ir.expressions import (
     dotted,
     parts,
 )
-from smachac.ir.nodes import Data, Expression, Struct
+from smachac.ir.nodes import Expression
 from smachac.ir.script_code import script_code
 from smachac.ir.types import ANY, Type
 
 Names = Mapping[str, Type]
 """What names stand for; userdata is a record."""
 
-LONGEST_TUPLE = 64
-"""The longest list whose items have separate types; the items of a longer one have one type."""
-
-DEEPEST = 12
-"""Levels of one type; what is deeper is `any`."""
-
 METRES = Type("float", ("m",))
-
-
-def type_of_data(data: Data, depth: int = DEEPEST) -> Type:
-    """The type of a value of the script."""
-    match data:
-        case bool():
-            return BOOL
-        case int() | str():
-            return Type("literal", (data,))
-        case float():
-            return FLOAT
-        case None:
-            return NONE
-        case Expression(text=text):
-            tree = script_code(text).portable
-            return ANY if tree is None else type_of(tree, {})
-        case _ if depth == 0:
-            return ANY
-        case tuple():
-            return _tuple((type_of_data(item, depth - 1) for item in data), len(data))
-        case Struct(entries=entries):
-            return _mapping((name, type_of_data(item, depth - 1)) for name, item in entries)
-    return assert_never(data)
-
-
-def _tuple(of: Iterable[Type], size: int) -> Type:
-    """The type of a list of so many items; those of a long list are not kept one by one."""
-    if size <= LONGEST_TUPLE:
-        return Type("tuple", tuple(of))
-    return Type("array", (widened(joined(of)), size))
-
-
-def _mapping(of: Iterable[tuple[str, Type]]) -> Type:
-    found = dict(of)
-    if len(found) <= LONGEST_TUPLE:
-        return mapping(found.items())
-    return Type("dict", (widened(joined(found.values())),))
 
 
 def type_of(expr: Expr, names: Names) -> Type:
@@ -110,7 +70,7 @@ def type_of(expr: Expr, names: Names) -> Type:
     """
     match expr:
         case Constant(value):
-            return type_of_data(value)
+            return type_of_literal(value)
         case Name(name):
             return names.get(name, ANY)
         case Attribute(value, name):
@@ -125,7 +85,7 @@ def type_of(expr: Expr, names: Names) -> Type:
             # The test may well be whether there is anything: what is there counts.
             return joined(present(type_of(branch, names)) for branch in (then, otherwise))
         case ListDisplay(found) | TupleDisplay(found):
-            return _tuple((type_of(item, names) for item in found), len(found))
+            return tuple_type((type_of(item, names) for item in found), len(found))
         case DictDisplay(entries):
             return _display(entries, names)
         case Unary(word, operand):
@@ -243,7 +203,7 @@ def _item(owner: Type, index: Type) -> Type:
 def _display(entries: tuple[tuple[Expr, Expr], ...], names: Names) -> Type:
     found = [(key, type_of(value, names)) for key, value in entries]
     if all(isinstance(key, Constant) and isinstance(key.value, str) for key, _ in found):
-        return _mapping(
+        return mapping_type(
             (str(key.value), type_) for key, type_ in found if isinstance(key, Constant)
         )
     return DICT

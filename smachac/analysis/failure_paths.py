@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from typing import Literal
 
-from smachac.analysis.successors import Arrival, Routes
 from smachac.diagnostics.diagnostic import PathStep, ended, entered
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes
@@ -15,7 +13,11 @@ from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED, fails, successes
 from smachac.ir.script_paths import PlainPaths, steps_in_script
 from smachac.ir.traversal import outcome_names
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
+
+TYPE_CHECKING = False  # annotations only: few machines have routes
+if TYPE_CHECKING:
+    from smachac.analysis.successors import Arrival, Routes
 
 Answer = Literal["caught", "repeated", "ignored", "not caught", "lost"]
 """What becomes of a failure: another state follows than after a success; the state, or one that

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 from smachac.analysis.expression_errors import Fault, expression_faults
 from smachac.analysis.expression_types import Names, type_of
@@ -17,7 +16,7 @@ from smachac.analysis.type_lattice import inside, item_of
 from smachac.ir.expressions import Expr
 from smachac.ir.script_code import fields_of, script_code
 from smachac.ir.types import ANY, Type
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 
 OVER_ITEMS = frozenset(["max", "min", "sorted"])
 """Functions with a function of an item as their argument `key`."""

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from smachac.analysis.expression_types import type_of_data
+from smachac.analysis.data_types import type_of_data
 from smachac.analysis.type_inference import Clash
 from smachac.analysis.type_lattice import is_unknown, item_of, misfit
 from smachac.diagnostics.source import Span

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.analysis.control_flow import (
@@ -28,6 +27,7 @@ from smachac.ir.graph import edges, is_unread, stopped_endings
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import leads_to_child, outcome_names
+from smachac.records import replace
 
 OutcomesByPath = dict[str, tuple[str, ...]]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.analysis.null_guards import excludes_null
@@ -15,6 +14,7 @@ from smachac.ir.nodes import Leaf, Node, StateMachine
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import outputs_to
 from smachac.ir.types import ANY
+from smachac.records import replace
 
 MOST_VISITS = 1_000_000
 """States looked at in one run; beyond them a value is taken to arrive."""

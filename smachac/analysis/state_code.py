@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence, Set
-from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Related
 from smachac.diagnostics.source import NOWHERE, Source, Span, Word
@@ -32,6 +31,7 @@ from smachac.pysource.user_code import (
     languages,
     user_types,
 )
+from smachac.records import replace
 
 NO_SUCH_PARAMETER = FaultKind(
     name="no such parameter",

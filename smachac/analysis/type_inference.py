@@ -20,8 +20,7 @@ from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property, reduce
 from typing import Literal, TypeAlias
 
-from smachac.analysis.expression_errors import always_fails
-from smachac.analysis.expression_types import keys_read, type_of_call, type_of_data
+from smachac.analysis.data_types import type_of_data
 from smachac.analysis.received_types import received_types
 from smachac.analysis.type_lattice import (
     NONE,
@@ -39,11 +38,14 @@ from smachac.analysis.uses import place_of
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir import nodes
 from smachac.ir.leaf import functions, key_names, variable_of
-from smachac.ir.message_types import Definitions
 from smachac.ir.nodes import Container, Data, Expression, Key, Leaf, Machine, Node, Struct, Variable
 from smachac.ir.traversal import outer_inputs, outer_outputs
 from smachac.ir.types import ANY, Type
 from smachac.records import dataclass, field
+
+TYPE_CHECKING = False  # annotations only: most machines have no messages
+if TYPE_CHECKING:
+    from smachac.ir.message_types import Definitions
 
 MOST_FLOWS = 64
 """The most values of one type that are distinguished in one cell."""
@@ -218,6 +220,8 @@ class _Inference:
             if key.name in written:
                 for span, data in written[key.name]:
                     if isinstance(data, Expression) and not leaf.stand_in:
+                        from smachac.analysis.expression_types import keys_read
+
                         reads = {k: inputs[k] for k in keys_read(data) if k in inputs}
                         self.computation(
                             Computation(cell=cell, span=span, reads=reads, expression=data)
@@ -269,6 +273,8 @@ class _Inference:
         elif node.items is not None:
             items, span = node.items.data, node.items.span
             if isinstance(items, Expression):
+                from smachac.analysis.expression_types import keys_read
+
                 reads = {key: scope.at(key) for key in keys_read(items)}
                 computation = Computation(
                     cell=item, span=span, reads=reads, expression=items, items=True
@@ -365,6 +371,9 @@ class _Inference:
         if len(known) < len(held) or rounds > MOST_ROUNDS:
             return
         if computation.expression is not None:
+            from smachac.analysis.expression_errors import always_fails
+            from smachac.analysis.expression_types import type_of_call
+
             type_ = type_of_call(computation.expression, known)
             if type_ == ANY and always_fails(computation.expression, known):
                 return

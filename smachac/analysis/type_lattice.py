@@ -414,3 +414,37 @@ def settled(written: Type, read: Type) -> Type:
                 read,
             )
     return meet(written, read)
+
+
+LONGEST_TUPLE = 64
+"""The longest list whose items have separate types; the items of a longer one have one type."""
+
+DEEPEST = 12
+"""Levels of one type; what is deeper is `any`."""
+
+
+def type_of_literal(value: bool | int | float | str | None) -> Type:
+    """The type of a number, a text, true, false or null."""
+    match value:
+        case bool():
+            return BOOL
+        case int() | str():
+            return Type("literal", (value,))
+        case float():
+            return FLOAT
+    return NONE
+
+
+def tuple_type(of: Iterable[Type], size: int) -> Type:
+    """The type of a list of so many items; those of a long list are not kept one by one."""
+    if size <= LONGEST_TUPLE:
+        return Type("tuple", tuple(of))
+    return Type("array", (widened(joined(of)), size))
+
+
+def mapping_type(of: Iterable[tuple[str, Type]]) -> Type:
+    """The type of a mapping with these keys; those of a large mapping are not kept one by one."""
+    found = dict(of)
+    if len(found) <= LONGEST_TUPLE:
+        return mapping(found.items())
+    return Type("dict", (widened(joined(found.values())),))

@@ -1,135 +1,239 @@
-"""The rules over the state graph: each is one function; `RULES` lists them all."""
+"""The rules over the state graph: each is one function; `rules` returns them.
+
+The modules of rules are imported where a machine has their subject: a check of ten states would
+take a quarter longer with all of them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator
 from itertools import groupby
+from typing import TypeAlias
 
 from smachac.analysis.context import Context
-from smachac.checks.classes import class_code, interfaces, template_blocks, unusable_code
-from smachac.checks.code import callables, expressions, undefined_names
-from smachac.checks.concurrence import concurrence, races
-from smachac.checks.names import names
-from smachac.checks.outcomes import failures, outcomes, reachability
-from smachac.checks.properties import properties
-from smachac.checks.robot import bodies, grip, motion, open_grip, robot, values, workspace
-from smachac.checks.ros import message_fields
+from smachac.checks import subjects
 from smachac.checks.rule import Rule
-from smachac.checks.timing import loops, stops, timeouts
-from smachac.checks.types import types
-from smachac.checks.userdata import (
-    declarations,
-    initial_values,
-    stale_keys,
-    stores,
-    undeclared_keys,
-    unwritten_outputs,
-    userdata,
-)
-from smachac.diagnostics.diagnostic import Diagnostic, Finding, Report, diagnostic
+from smachac.diagnostics.diagnostic import Diagnostic, Finding, Problem, Report, diagnostic
 from smachac.ir.nodes import Machine
 from smachac.ir.script_paths import PlainPaths, steps_in_script
+from smachac.records import replace
 
-MACHINE_RULES: tuple[Rule, ...] = (
-    expressions.bad_expression,
-    names.unknown_target,
-    names.unknown_outcome,
-    outcomes.undeclared_container_outcome,
-    outcomes.unhandled_outcome,
-    outcomes.implicit_exit,
-    names.duplicate_state,
-    names.name_clash,
-    names.shadowed_name,
-    reachability.unreachable_state,
-    loops.trap,
-    reachability.impossible_outcome,
-    loops.unbounded_loop,
-    reachability.no_initial,
-    failures.unhandled_failure,
-    timeouts.no_timeout,
-    timeouts.no_way_to_stop,
-    stops.ignored_stop,
-    stops.stop_as_success,
-    stops.task_after_stop,
-    timeouts.short_time_limit,
-    loops.unchanging_condition,
-    userdata.read_before_write,
-    userdata.unknown_remap,
-    userdata.undeclared_container_key,
-    types.type_mismatch,
-    declarations.dead_key,
-    declarations.unused_declaration,
-    userdata.lost_output,
-    undeclared_keys.lossy_write,
-    class_code.undeclared_return,
-    undeclared_keys.undeclared_access,
-    expressions.impossible_operation,
-    expressions.constant_comparison,
-    initial_values.overruled_value,
-    unwritten_outputs.unwritten_output,
-    class_code.never_returned,
-    callables.not_a_function,
-    callables.wrong_arguments,
-    callables.wrong_result,
-    stale_keys.stale_key,
-    stores.dead_store,
-    initial_values.secret_in_script,
-    concurrence.uncovered_combination,
-    concurrence.overlapping_rules,
-    concurrence.dead_rule,
-    failures.masked_failure,
-    races.data_race,
-    races.resource_clash,
-    timeouts.never_ends,
-    concurrence.empty_concurrence,
-    robot.wrong_length,
-    robot.joint_limit,
-    robot.not_a_rotation,
-    robot.unit_mismatch,
-    robot.unknown_frame,
-    motion.too_fast,
-    motion.wrong_frame,
-    message_fields.unknown_field,
-    grip.closed_gripper,
-    bodies.body_loaded_twice,
-    message_fields.untyped_message,
-    open_grip.open_gripper,
-    values.out_of_limits,
-    values.unknown_name,
-    values.doubtful_unit,
-    properties.property_fails,
-    properties.property_vacuous,
-    properties.unknown_event,
-    properties.property_undecided,
+Rules: TypeAlias = tuple[Rule, ...]
+
+
+def _control_flow() -> Rules:
+    from smachac.checks.names import names
+    from smachac.checks.outcomes import failures, outcomes, reachability
+    from smachac.checks.robot import values
+    from smachac.checks.timing import loops, stops, timeouts
+    from smachac.checks.types import types
+
+    return (
+        names.unknown_target,
+        names.unknown_outcome,
+        outcomes.undeclared_container_outcome,
+        outcomes.unhandled_outcome,
+        outcomes.implicit_exit,
+        names.duplicate_state,
+        names.name_clash,
+        names.shadowed_name,
+        reachability.unreachable_state,
+        loops.trap,
+        reachability.impossible_outcome,
+        loops.unbounded_loop,
+        reachability.no_initial,
+        failures.unhandled_failure,
+        timeouts.no_timeout,
+        timeouts.no_way_to_stop,
+        stops.ignored_stop,
+        stops.stop_as_success,
+        stops.task_after_stop,
+        timeouts.short_time_limit,
+        loops.unchanging_condition,
+        types.type_mismatch,
+        failures.masked_failure,
+        timeouts.never_ends,
+        values.out_of_limits,
+        values.doubtful_unit,
+    )
+
+
+def _code() -> Rules:
+    from smachac.checks.code import callables, expressions
+    from smachac.checks.robot import values
+
+    return (
+        expressions.bad_expression,
+        expressions.impossible_operation,
+        expressions.constant_comparison,
+        callables.not_a_function,
+        callables.wrong_arguments,
+        callables.wrong_result,
+        values.unknown_name,
+    )
+
+
+def _userdata() -> Rules:
+    from smachac.checks.userdata import (
+        declarations,
+        initial_values,
+        stale_keys,
+        stores,
+        undeclared_keys,
+        userdata,
+    )
+
+    return (
+        userdata.read_before_write,
+        userdata.unknown_remap,
+        userdata.undeclared_container_key,
+        declarations.dead_key,
+        declarations.unused_declaration,
+        userdata.lost_output,
+        undeclared_keys.lossy_write,
+        undeclared_keys.undeclared_access,
+        initial_values.overruled_value,
+        stale_keys.stale_key,
+        stores.dead_store,
+        initial_values.secret_in_script,
+    )
+
+
+def _classes() -> Rules:
+    from smachac.checks.classes import class_code
+    from smachac.checks.userdata import unwritten_outputs
+
+    return (
+        class_code.undeclared_return,
+        unwritten_outputs.unwritten_output,
+        class_code.never_returned,
+    )
+
+
+def _branches() -> Rules:
+    from smachac.checks.concurrence import concurrence, races
+
+    return (
+        concurrence.uncovered_combination,
+        concurrence.overlapping_rules,
+        concurrence.dead_rule,
+        races.data_race,
+        races.resource_clash,
+        concurrence.empty_concurrence,
+    )
+
+
+def _robots() -> Rules:
+    from smachac.checks.robot import bodies, grip, motion, open_grip, robot
+
+    return (
+        robot.wrong_length,
+        robot.joint_limit,
+        robot.not_a_rotation,
+        robot.unit_mismatch,
+        robot.unknown_frame,
+        motion.too_fast,
+        motion.wrong_frame,
+        grip.closed_gripper,
+        bodies.body_loaded_twice,
+        open_grip.open_gripper,
+    )
+
+
+def _messages() -> Rules:
+    from smachac.checks.ros import message_fields
+
+    return (message_fields.unknown_field, message_fields.untyped_message)
+
+
+def _properties() -> Rules:
+    from smachac.checks.properties import properties
+
+    return (
+        properties.property_fails,
+        properties.property_vacuous,
+        properties.unknown_event,
+        properties.property_undecided,
+    )
+
+
+def _user_code() -> Rules:
+    from smachac.checks.classes import interfaces, template_blocks, unusable_code
+
+    return (
+        interfaces.interfaces_differ,
+        interfaces.stale_code,
+        template_blocks.unprinted_parts,
+        unusable_code.code_not_found,
+        unusable_code.unusable_class,
+    )
+
+
+def _undefined_names() -> Rules:
+    from smachac.checks.code import undefined_names
+
+    return (undefined_names.undefined_name,)
+
+
+Subject: TypeAlias = Callable[[Context], bool]
+"""Whether a machine has what a group of rules is about."""
+
+MACHINE_RULES: tuple[tuple[Subject, Callable[[], Rules]], ...] = (
+    (subjects.every_machine, _control_flow),
+    (subjects.texts, _code),
+    (subjects.userdata, _userdata),
+    (subjects.classes, _classes),
+    (subjects.branches, _branches),
+    (subjects.robots, _robots),
+    (subjects.messages, _messages),
+    (subjects.properties, _properties),
 )
-"""The rules that need the machine alone, in the order of their codes."""
+"""The groups of rules that need the machine alone, each with its subject."""
 
-CODE_RULES: tuple[Rule, ...] = (
-    interfaces.interfaces_differ,
-    interfaces.stale_code,
-    template_blocks.unprinted_parts,
-    unusable_code.code_not_found,
-    unusable_code.unusable_class,
-)
-"""The rules about the code of state types, in the order of their codes. A build runs them too."""
 
-RULES = (*MACHINE_RULES, *CODE_RULES, undefined_names.undefined_name)
-"""All rules. Those that need the code of the project (`Context.project`) come last: a report lists
-the files in the order of their first finding."""
+def rules(context: Context | None = None) -> Rules:
+    """All rules; with a context, those that can find something in its machine.
 
-PROBLEMS = workspace.PROBLEMS
+    Those over the machine are first, in the order of their codes. Those that need the code of the
+    project (`Context.project`) come last: a report lists the files in the order of their first
+    finding.
+    """
+    machine = [
+        rule
+        for subject, group in MACHINE_RULES
+        if context is None or subject(context)
+        for rule in group()
+    ]
+    machine.sort(key=lambda rule: rule.code.code)
+    code = code_rules() if context is None or subjects.user_code(context) else ()
+    names = _undefined_names() if context is None or subjects.texts(context) else ()
+    return (*machine, *code, *names)
+
+
+def code_rules() -> Rules:
+    """The rules about the code of state types, in the order of their codes. A build runs them
+    too."""
+    return _user_code()
+
+
+def problems() -> tuple[Problem[...], ...]:
+    """The problems that rules report beside their own codes."""
+    from smachac.checks.robot import workspace
+
+    return workspace.PROBLEMS
 
 
 def check_machine(
-    machine: Machine, rules: tuple[Rule, ...] = RULES, context: Context | None = None
+    machine: Machine, some: Rules | None = None, context: Context | None = None
 ) -> Report:
-    """The findings of all rules over a machine, in the order of the rules. `context`: the context
-    of the machine, for a caller that keeps the facts which the rules need."""
+    """The findings over a machine, in the order of the rules: of all rules, or of `some`.
+    `context`: the context of the machine, for a caller that keeps the facts which the rules
+    need."""
     context = context or Context(machine)
     found: Report = []
-    for about_code, some in groupby(rules, CODE_RULES.__contains__):
-        part = _diagnostics(context, some)
+    some = rules(context) if some is None else some
+    for about_code, group in groupby(some, lambda rule: rule.about_code):
+        part = _diagnostics(context, group)
         found += _in_order_of_use(part, context) if about_code else part
     return found
 

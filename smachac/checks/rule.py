@@ -15,14 +15,22 @@ RuleFunction: TypeAlias = Callable[[Context], Iterator[Finding]]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rule:
-    """A code, and the function that finds its faults."""
+    """A code, and the function that finds its faults. `about_code`: they are in the code of state
+    types."""
 
     code: Code
     function: RuleFunction
+    about_code: bool = False
 
 
 def rule(
-    code: str, name: str, severity: Severity, *, unsuppressible: bool = False, effect: str = ""
+    code: str,
+    name: str,
+    severity: Severity,
+    *,
+    unsuppressible: bool = False,
+    effect: str = "",
+    about_code: bool = False,
 ) -> Callable[[RuleFunction], Rule]:
     """Make a rule of a function. Its docstring is the explanation of the code."""
 
@@ -35,6 +43,6 @@ def rule(
             unsuppressible=unsuppressible,
             effect=effect,
         )
-        return Rule(code=entry, function=function)
+        return Rule(code=entry, function=function, about_code=about_code)
 
     return declare

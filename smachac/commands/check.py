@@ -232,9 +232,11 @@ def _check_paths(
 
 def _simulation_rule(arguments: Namespace) -> MachineCheck | None:
     """The rule that runs the simulation, if the command has `--sim`."""
+    if not arguments.sim:
+        return None
     from smachac.checks.robot.workspace import unreachable
 
-    return unreachable if arguments.sim else None
+    return unreachable
 
 
 def _changed(revision: str | None, used: set[str]) -> set[str] | None:
@@ -250,7 +252,6 @@ def _select(
     found: Batch, changed: set[str] | None, arguments: Namespace
 ) -> tuple[Batch, list[str]]:
     """The findings that the arguments select, and notes for the summary on the others."""
-    from smachac.diagnostics import baseline
     from smachac.diagnostics.severities import select_findings
 
     if changed is not None:
@@ -258,6 +259,8 @@ def _select(
     report = select_findings(found.report, _codes_of(arguments.select), _codes_of(arguments.ignore))
     notes = []
     if arguments.baseline is not None and not arguments.write_baseline:
+        from smachac.diagnostics import baseline
+
         old = _read_baseline(arguments.baseline)
         report, known, gone = baseline.compare(report, old)
         notes += [f"{known} in the baseline"] if known else []

@@ -4,7 +4,6 @@ long."""
 from __future__ import annotations
 
 import signal
-import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -28,6 +27,8 @@ def limited_time(seconds: int) -> Iterator[None]:
     0 is no limit. A lower limit of the process stays. Windows has no such limit, and there is none
     outside of the main thread, which receives the signals.
     """
+    import threading
+
     if not seconds or threading.current_thread() is not threading.main_thread():
         yield
         return

@@ -7,7 +7,6 @@ import contextlib
 import os
 import sys
 from argparse import Namespace
-from dataclasses import replace
 
 from smachac.commands.arguments import as_path, colour, machine_name, report_output, search_folders
 from smachac.commands.output import OK, print_report, usage
@@ -18,6 +17,7 @@ from smachac.commands.python_files import (
     python_analyses,
     python_finder,
 )
+from smachac.records import replace
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:

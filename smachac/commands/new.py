@@ -230,9 +230,8 @@ def _is_stepped(arguments: Namespace) -> bool | int:
 
 def _with(library: Library, name: str, text: str) -> Library:
     """A library with one more interface."""
-    from dataclasses import replace
-
     from smachac.diagnostics.source import Source
+    from smachac.records import replace
 
     source = Source(name, text)
 

@@ -574,11 +574,10 @@ NO_SCENARIO = "the scenario cannot be played, so nothing is run"
 def read_fault_file(path: Path, machine: Machine, report: Report) -> tuple[Fault, ...] | None:
     """The faults of a file; None, with findings in the report, if it has mistakes, such as a state
     that the machine does not have. A simulation knows states by their full paths."""
-    from dataclasses import replace
-
     from smachac.frontend.errors.script import wrong_shape
     from smachac.frontend.text.data_files import plain, span_at
     from smachac.interpreter.scenario import leaves_named
+    from smachac.records import replace
     from smachac.robots.faults import read_file
     from smachac.robots.fields import DataError
 
@@ -633,12 +632,11 @@ def read_scenario_file(
 def _read_tree(path: Path, report: Report, effect: str) -> Tree | None:
     """The YAML of a file that is no script; None if it cannot be read. Its findings have the effect
     of such a file."""
-    from dataclasses import replace
-
     from smachac.diagnostics.source import Span
     from smachac.frontend.errors.script import wrong_shape
     from smachac.frontend.files import read_source
     from smachac.frontend.text.yaml_tree import parse
+    from smachac.records import replace
 
     source = read_source(path, report)
     tree = parse(source, report) if source is not None else None

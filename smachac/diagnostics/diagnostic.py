@@ -7,10 +7,7 @@ the code (`smachac explain`, docs/rules.md), and the examples in it are a test, 
 
 from __future__ import annotations
 
-import difflib
-import hashlib
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from enum import Enum
 from functools import lru_cache
 from typing import Generic, ParamSpec
@@ -19,7 +16,7 @@ from smachac.diagnostics.negation import are_unlike
 from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.wording import listed
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 
 P = ParamSpec("P")
 
@@ -272,6 +269,8 @@ def fingerprint(item: Diagnostic) -> str:
     Taken over its code and arguments, the name of its file and that of its state; not over the
     path of the state, which depends on the caller.
     """
+    import hashlib
+
     file = item.span.source.file_name
     state = (item.finding.node or "").rpartition("/")[2]
     text = "\0".join((item.code, file, state, *item.finding.arguments))
@@ -333,6 +332,8 @@ def _nearest(word: str, names: tuple[str, ...]) -> str | None:
     folded = word.casefold()
     nearest = [name for name in names if name.casefold() == folded and name != word]
     if not nearest and len(names) <= MOST_CANDIDATES and len(word) <= LONGEST_WORD:
+        import difflib
+
         nearest = difflib.get_close_matches(word, names, n=1, cutoff=0.6)
     if not nearest or are_unlike(word, nearest[0]):
         return None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 
 NEGATIONS = frozenset(["cannot", "never", "no", "non", "not", "without"])
@@ -32,6 +31,8 @@ _WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 
 def are_unlike(one: str, name: str) -> bool:
     """Whether a similar name has another meaning than a word, so that it is no guess."""
+    import difflib
+
     likeness = difflib.SequenceMatcher(None, one.casefold(), name) if name == STOPPED else None
     if likeness is not None and likeness.ratio() < NEAR_STOPPED:
         return True
@@ -65,6 +66,8 @@ def _negated(words: list[str], others: list[str]) -> bool:
 def _negates(word: str, others: list[str], left: list[str]) -> bool:
     """Whether a word negates another name, or a word of it. `left` are the words that only the
     other name has."""
+    import difflib
+
     if word in NEGATIONS:
         return not difflib.get_close_matches(word, left, n=1, cutoff=SLIP)
     for prefix in PREFIXES:

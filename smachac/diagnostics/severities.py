@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

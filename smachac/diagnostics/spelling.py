@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Iterable
 from functools import lru_cache
@@ -58,6 +57,8 @@ class Guesser:
         if nearest is None and len(self.names) <= MOST_COMPARED and len(word) <= LONGEST_SLIP:
             parts = [name for name in self.names if word.casefold() in name.casefold().split("_")]
             if len(parts) != 1 or len(word) < SHORTEST_PART:
+                import difflib
+
                 parts = difflib.get_close_matches(word, self.names, n=1)
             nearest = next(iter(parts), None)
         return None if nearest is None or are_unlike(word, nearest) else nearest

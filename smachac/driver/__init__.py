@@ -5,16 +5,14 @@ Every command and the public API pass through these functions. Only this module 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
-from functools import cache
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import cache, cached_property
 from os import PathLike
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
 
-from smachac import checks
 from smachac.analysis.context import Context
-from smachac.checks import CODE_RULES, check_machine
+from smachac.checks import check_machine, code_rules
 from smachac.diagnostics.diagnostic import (
     Code,
     Diagnostic,
@@ -27,7 +25,6 @@ from smachac.diagnostics.diagnostic import (
 from smachac.diagnostics.severities import apply_severities
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.discovery import PYTHON_SUFFIX
-from smachac.frontend.errors import python_machines, references, suppressions
 from smachac.frontend.errors import script as script_errors
 from smachac.frontend.files import disk_library, read_source
 from smachac.frontend.loader import Library
@@ -40,10 +37,8 @@ from smachac.ir.nodes import Checked, Machine, StateType
 from smachac.ir.recursion import deep_recursion
 from smachac.pysource.ros_names import ROS_VERSIONS
 from smachac.pysource.user_code import Declared, ProjectCode
-from smachac.records import dataclass, field
-from smachac.targets import BuildContext, Files, Target, errors, load_target
-from smachac.targets.hiding_files import hiding_files
-from smachac.targets.runtime_files import runtime_files
+from smachac.records import dataclass, field, replace
+from smachac.targets import BuildContext, Files, Target, load_target
 
 TYPE_CHECKING = False  # annotations only: a check of scripts reads no machines in Python
 if TYPE_CHECKING:
@@ -51,22 +46,38 @@ if TYPE_CHECKING:
 
 Folders: TypeAlias = "Sequence[str | PathLike[str]]"
 
-_PROBLEMS = (
-    *script_errors.PROBLEMS,
-    *references.PROBLEMS,
-    *suppressions.PROBLEMS,
-    *checks.PROBLEMS,
-    *errors.PROBLEMS,
-    *python_machines.PROBLEMS,
-)
 
-CODES: Mapping[str, Code] = {
-    code.code: code
-    for code in sorted(
-        [*(problem.code for problem in _PROBLEMS), *(rule.code for rule in checks.RULES)],
-        key=lambda code: code.code,
-    )
-}
+class _Codes(Mapping[str, Code]):
+    """The codes of problems and of rules, collected at their first use: that imports all rules."""
+
+    def __getitem__(self, code: str) -> Code:
+        return self._known[code]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._known)
+
+    def __len__(self) -> int:
+        return len(self._known)
+
+    @cached_property
+    def _known(self) -> dict[str, Code]:
+        from smachac.checks import problems, rules
+        from smachac.frontend.errors import python_machines, references, suppressions
+        from smachac.targets import errors
+
+        declared = (
+            *script_errors.PROBLEMS,
+            *references.PROBLEMS,
+            *suppressions.PROBLEMS,
+            *problems(),
+            *errors.PROBLEMS,
+            *python_machines.PROBLEMS,
+        )
+        codes = [*(problem.code for problem in declared), *(rule.code for rule in rules())]
+        return {code.code: code for code in sorted(codes, key=lambda code: code.code)}
+
+
+CODES: Mapping[str, Code] = _Codes()
 """All codes, those of problems and those of rules, in order."""
 
 OF_CLASSES = ("SM608", "SM609")
@@ -315,6 +326,8 @@ def compile_script(
     levels: int = 0,
 ) -> Compiled:
     """Emit the files of a target for an analysed script. `levels`: see BuildContext."""
+    from smachac.targets.runtime_files import runtime_files
+
     if analysis.checked is None or analysis.library is None:
         return Compiled({}, analysis.report)
     found: Report = []
@@ -334,6 +347,8 @@ def compile_files(
     levels: int = 0,
 ) -> Compiled:
     """As `compile_script`, for files that are written: none of them hides a module (SM611)."""
+    from smachac.targets.hiding_files import hiding_files
+
     files, report = compile_script(analysis, target, options, levels)
     hiding = list(hiding_files(files, analysis.checked)) if analysis.checked is not None else []
     return Compiled({} if hiding else files, merged(report, hiding))
@@ -371,7 +386,7 @@ def code_faults(machine: Machine, target: Target, library: Library) -> Report:
         declared=lambda _, type_: target.declared(type_, library),
         target=target.name,
     )
-    return check_machine(machine, CODE_RULES, Context(machine, project=project))
+    return check_machine(machine, code_rules(), Context(machine, project=project))
 
 
 def draw(

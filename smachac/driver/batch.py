@@ -5,10 +5,8 @@ A sub-script is checked through its callers; one without a caller is checked alo
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
@@ -24,7 +22,7 @@ from smachac.frontend.text.suppressions import Suppression
 from smachac.frontend.text.yaml_tree import Seq
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import outer_inputs, outer_outputs
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -297,6 +295,8 @@ def _caller(
 ) -> Source:
     """A script that calls one sub-script, and ends with its outcomes."""
     ends = list(outcomes)
+    import json
+
     script = {
         "name": "alone",
         "template": "Base",

@@ -12,7 +12,6 @@ import json
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +27,7 @@ from smachac.diagnostics.source import Source, Span
 from smachac.driver import CODES
 from smachac.frontend.files import PACKAGE
 from smachac.pysource.coverage import Coverage, UnknownPlace
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 from smachac.version import __version__
 
 Reader = Callable[[str], "Source | None"]

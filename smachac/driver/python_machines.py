@@ -6,11 +6,10 @@ import hashlib
 import os
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
 
-from smachac.checks import RULES, check_machine
+from smachac.checks import check_machine, rules
 from smachac.checks.rule import Rule
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, grouped, in_order
 from smachac.diagnostics.severities import apply_severities
@@ -37,7 +36,7 @@ from smachac.pysource.machines.roots import Roots, machines_of, variants_of
 from smachac.pysource.machines.values import UseFault
 from smachac.pysource.python2 import INSTALL, is_installed, looks_like_python2
 from smachac.pysource.source import LONGEST, PythonText, is_readable, syntax_error
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 
 CANNOT_WORK = frozenset({
     "SM101", "SM102", "SM103", "SM104", "SM106", "SM201", "SM301", "SM308", "SM309", "SM310",
@@ -47,9 +46,11 @@ CANNOT_WORK = frozenset({
 Only errors of these are, because a warning can be about a path that is impossible. A race of two
 branches (SM405) is none of them: both can use parts of one value, as entries of a dictionary."""
 
-_RULES = frozenset(rule.code.code for rule in RULES)
+_ALL_RULES = rules()
 
-_DEFAULT_RULES = tuple(rule for rule in RULES if rule.code.code in CANNOT_WORK)
+_RULES = frozenset(rule.code.code for rule in _ALL_RULES)
+
+_DEFAULT_RULES = tuple(rule for rule in _ALL_RULES if rule.code.code in CANNOT_WORK)
 
 IN_ALL = frozenset({"SM201", "SM203"})
 """The codes of findings that count only if they are true of each instance of a container: another
@@ -117,7 +118,7 @@ class PythonProject:
             )
         read_before = [*report]
         whole_rules = everything or MARK in source.text  # a comment can be about any finding
-        rules = RULES if whole_rules else _DEFAULT_RULES
+        rules = _ALL_RULES if whole_rules else _DEFAULT_RULES
         repository, evaluator, reader = self._repository(path, whole_rules)
         del evaluator.faults[:]
 

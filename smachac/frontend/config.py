@@ -255,7 +255,10 @@ def _cpp_types(source: Source, value: object, report: Report) -> Mapping[str, Cp
         if texts or not isinstance(class_, str) or not isinstance(header, str):
             message = f"`{name}` must have a class and a header"
             _wrong(source, name, message, help, report, ("class", name))
-        elif _CLASS.fullmatch(class_) is None or _HEADER.fullmatch(header) is None:
+        elif (
+            re.fullmatch(_CLASS, class_, re.ASCII) is None
+            or re.fullmatch(_HEADER, header, re.ASCII) is None
+        ):
             message = f"`{name}` names no class of C++ in a header"
             _wrong(source, name, message, help, report, ("class", name))
         else:
@@ -263,18 +266,18 @@ def _cpp_types(source: Source, value: object, report: Report) -> Mapping[str, Cp
     return found
 
 
-_CLASS = re.compile(r"(?:::)?[A-Za-z_]\w*(?:::[A-Za-z_]\w*)*", re.ASCII)
-_HEADER = re.compile(r"[\w.+-]+(?:/[\w.+-]+)*", re.ASCII)
+_CLASS = r"(?:::)?[A-Za-z_]\w*(?:::[A-Za-z_]\w*)*"
+_HEADER = r"[\w.+-]+(?:/[\w.+-]+)*"
 
 
 def _looks_like_settings(table: object) -> bool:
     return isinstance(table, dict) and not table.keys().isdisjoint(SETTINGS)
 
 
-_WITHOUT_QUOTES = re.compile(r"[ \t]*(?:\"?[\w.-]+\"?)[ \t]*=[ \t]*([^\W\d][\w./-]*)[ \t]*(?:#|$)")
+_WITHOUT_QUOTES = r"[ \t]*(?:\"?[\w.-]+\"?)[ \t]*=[ \t]*([^\W\d][\w./-]*)[ \t]*(?:#|$)"
 """A setting with a text that has no quotes."""
 
-_YAML_LINE = re.compile(r"[ \t]*([\w-]+)[ \t]*(:)(?=[ \t]|$)")
+_YAML_LINE = r"[ \t]*([\w-]+)[ \t]*(:)(?=[ \t]|$)"
 _BRACKETS = {"[": "]", "{": "}"}
 _PART = re.compile(r""" "(?:\\.|[^"\\\n])*" | '[^'\n]*' | \#[^\n]* | [][{}] """, re.VERBOSE)
 """The parts of TOML in which brackets count, and those in which they do not."""
@@ -285,13 +288,13 @@ _VALUE = re.compile(r"""[ \t]*=[ \t]*("[^"\n]*"|'[^'\n]*'|\[[^]\n]*\]|[^\s#,}]+)
 _NEXT = re.compile(r"[\w-]+[ \t]*=")
 """The next setting."""
 
-_POSITION = re.compile(r" \(at line (\d+), column (\d+)\)$")
+_POSITION = r" \(at line (\d+), column (\d+)\)$"
 
 
 def _not_toml(source: Source, error: str) -> Diagnostic:
     """SM007 at the character that TOML does not allow: its parser states the place in its
     message only."""
-    position = _POSITION.search(error)
+    position = re.search(_POSITION, error)
     message, help = error, "correct the syntax: strings have quotes, lists have brackets"
     span = Span(source, 0, 0)
     if position is not None:
@@ -300,11 +303,11 @@ def _not_toml(source: Source, error: str) -> Diagnostic:
         at = min(start + column - 1, max(len(source.text) - 1, 0))
         span = Span(source, at, min(at + 1, len(source.text)))
         message = error[: position.start()]
-        found = _YAML_LINE.match(source.line(line))
+        found = re.match(_YAML_LINE, source.line(line))
         if found is not None:
             span = Span(source, start + found.start(2), start + found.end(2))
             message, help = f"`:` follows `{found[1]}`", f"TOML writes `{found[1]} = [...]`"
-        bare = _WITHOUT_QUOTES.match(source.line(line))
+        bare = re.match(_WITHOUT_QUOTES, source.line(line))
         if bare is not None and start + bare.start(1) <= at <= start + bare.end(1):
             span = Span(source, start + bare.start(1), start + bare.end(1))
             message, help = f"`{bare[1]}` is a text without quotes", f'write `"{bare[1]}"`'

@@ -24,12 +24,10 @@ PYTHON_SUFFIX = ".py"
 SKIPPED = ("__pycache__", "node_modules")
 """Folders that are not searched; nor are those whose name begins with a dot."""
 
-_KEY = re.compile(r"^([\"']?)(\w+)\1[ \t]*:", re.M)
-_ITEM = re.compile(r"^[ \t]*(?:#[^\n]*|---[^\n]*)?$", re.M)
-_CALLABLE = re.compile(r"(?:^[ \t]+|[{,][ \t]*)(?:template|script|T|S)[ \t]*:", re.M)
-_FLOW_PART = re.compile(
-    r"""#[^\n]*|(?:"((?:[^"\\]|\\.)*)"?|'([^']*)'?|(\w+))([ \t\n]*:)?|[{}\[\]]""", re.DOTALL
-)
+_KEY = r"^([\"']?)(\w+)\1[ \t]*:"
+_ITEM = r"^[ \t]*(?:#[^\n]*|---[^\n]*)?$"
+_CALLABLE = r"(?:^[ \t]+|[{,][ \t]*)(?:template|script|T|S)[ \t]*:"
+_FLOW_PART = r"""#[^\n]*|(?:"((?:[^"\\]|\\.)*)"?|'([^']*)'?|(\w+))([ \t\n]*:)?|[{}\[\]]"""
 """A part of flow style: a comment, a text or word with the colon of a key, a bracket. A text that
 does not end goes up to the end, so that each character is read once."""
 
@@ -123,19 +121,21 @@ def _refuse_link(path: Path, folder: Path, disk: Disk) -> bool:
 def looks_like_a_script(text: str) -> bool:
     """Whether the outermost mapping has `states` and another field of scripts, or the text is a
     list of states; in block style or in flow style (`{name: main, states: [...]}`)."""
-    first = next((line for line in text.splitlines() if not _ITEM.fullmatch(line)), "").lstrip()
+    first = next(
+        (line for line in text.splitlines() if not re.fullmatch(_ITEM, line, re.M)), ""
+    ).lstrip()
     flow = first.startswith("{")
-    keys = _flow_keys(text) if flow else {found[2] for found in _KEY.finditer(text)}
+    keys = _flow_keys(text) if flow else {found[2] for found in re.finditer(_KEY, text, re.M)}
     if keys & {"states", "s"}:
         return bool(keys & _NAMED)
-    return first.startswith(("- ", "[")) and _CALLABLE.search(text) is not None
+    return first.startswith(("- ", "[")) and re.search(_CALLABLE, text, re.M) is not None
 
 
 def _flow_keys(text: str) -> set[str]:
     """The keys of the outermost mapping of a text in flow style."""
     keys = set()
     depth = 0
-    for part in _FLOW_PART.finditer(text):
+    for part in re.finditer(_FLOW_PART, text, re.DOTALL):
         if part[0] in "{[":
             depth += 1
         elif part[0] in "}]":

@@ -7,7 +7,6 @@ import errno
 import os
 import stat
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
 
@@ -29,16 +28,16 @@ from smachac.frontend.config import (
 )
 from smachac.frontend.errors.script import too_big, unreadable_file
 from smachac.frontend.loader import ROBOT_FILES, SUFFIXES, Library
-from smachac.frontend.text.yaml_recovery import parse_with_recovery
+from smachac.frontend.text.recovering_parser import parse_with_recovery
 from smachac.frontend.text.yaml_tree import Tree
 from smachac.pysource.ros_names import Ros
-from smachac.robots import xacro_files
+from smachac.records import replace
 from smachac.robots.encodings import EncodingError, decoded
-from smachac.robots.files import Packages, find_mesh, installed_packages
 
-TYPE_CHECKING = False  # annotations only: few commands parse texts in pieces
+TYPE_CHECKING = False  # annotations only: few scripts have a robot file or are parsed in pieces
 if TYPE_CHECKING:
     from smachac.frontend.text.pieces import PieceTree
+    from smachac.robots.files import Packages
 
 PACKAGE = Path(__file__).parent.parent
 BUILT_IN = (PACKAGE / "stdlib", PACKAGE / "targets" / "python" / "templates")
@@ -225,7 +224,7 @@ class Disk:
         return self._sources.get(path, (None, []))[0]
 
     def parse(self, source: Source, report: Report) -> Tree | None:
-        """As `yaml_recovery.parse_with_recovery`."""
+        """As `parse_with_recovery`."""
         if source not in self._trees:
             found: Report = []
             tree = self._parse_in_pieces(source) or parse_with_recovery(source, found)
@@ -255,6 +254,8 @@ class Disk:
 
     def expand(self, file: str, arguments: Mapping[str, str], packages: Packages) -> str:
         """The URDF text of a xacro file on disk. Raises XacroError."""
+        from smachac.robots import xacro_files
+
         key = (file, *sorted(arguments.items()), *sorted(packages.items()))
         if key not in self._expanded:
             expanded = xacro_files.expand(Path(file), arguments, packages)
@@ -471,7 +472,7 @@ def disk_library(
         policy=project.policy,
         settings_read=project.readable,
         robot=lambda name: _robot_file(name, disk, report),
-        mesh=lambda name, urdf, packages: find_mesh(name, Path(urdf), packages),
+        mesh=_mesh,
         expand=disk.expand,
     )
 
@@ -511,6 +512,8 @@ def definition_names(path: str, folders: Sequence[Path]) -> list[str]:
 def _definition_places(path: str, folders: Sequence[Path]) -> list[Path]:
     """The places where a file or folder of message definitions can be."""
     package, _, inner = path.partition("/")
+    from smachac.robots.files import installed_packages
+
     own = [
         file
         for folder in folders
@@ -531,6 +534,13 @@ def _package_folders(main: Path) -> list[Path]:
 
 def _real_name(folder: Path) -> str:
     return Path(os.path.realpath(folder)).name
+
+
+def _mesh(name: str, urdf: str, packages: Packages) -> Path | None:
+    """The path of a mesh that a URDF file names."""
+    from smachac.robots.files import find_mesh
+
+    return find_mesh(name, Path(urdf), packages)
 
 
 def _robot_file(name: str, disk: Disk, report: Report) -> Source | None:

@@ -15,9 +15,10 @@ from smachac.frontend.types.type_names import Aliases
 from smachac.ir.types import Bounds, CppClass
 from smachac.pysource.user_code import UserCode
 from smachac.records import dataclass, field
-from smachac.robots.files import Packages
-from smachac.robots.xacro_files import EXPAND, XacroError
-from smachac.robots.xacro_files import SUFFIX as XACRO_SUFFIX
+
+TYPE_CHECKING = False  # annotations only: few scripts have a robot file
+if TYPE_CHECKING:
+    from smachac.robots.files import Packages
 
 SUFFIXES = ("", ".yml", ".yaml")
 """What a script may leave out at the end of the name of a sub-script, in the order of search."""
@@ -25,10 +26,12 @@ SUFFIXES = ("", ".yml", ".yaml")
 
 def no_xacro(file: str, arguments: Mapping[str, str], packages: Packages) -> str:
     """Raise XacroError: texts in memory are not expanded."""
+    from smachac.robots.xacro_files import EXPAND, XacroError
+
     raise XacroError("a xacro file is expanded only on disk", EXPAND, Path(file))
 
 
-ROBOT_FILES = (".urdf", XACRO_SUFFIX)
+ROBOT_FILES = (".urdf", ".xacro")
 """The endings of robot files."""
 
 

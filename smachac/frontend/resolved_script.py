@@ -11,8 +11,6 @@ from typing import NamedTuple
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.schema import FieldOwner
 from smachac.frontend.text.fields import Keys, Pairs, Rules
-from smachac.ir.function_facts import FunctionFacts
-from smachac.ir.message_types import Definitions, MissingDefinitions, OtherTypes
 from smachac.ir.nodes import (
     FixedParam,
     Outcome,
@@ -23,9 +21,14 @@ from smachac.ir.nodes import (
     Value,
     Variable,
 )
-from smachac.ir.properties import Property
-from smachac.ir.robot import Robot
 from smachac.records import dataclass, field
+
+TYPE_CHECKING = False  # annotations only: few scripts have functions, messages or a robot
+if TYPE_CHECKING:
+    from smachac.ir.function_facts import FunctionFacts
+    from smachac.ir.message_types import Definitions, MissingDefinitions, OtherTypes
+    from smachac.ir.properties import Property
+    from smachac.ir.robot import Robot
 
 TIMEOUT, EXHAUSTED = "timeout", "exhausted"
 """The outcomes that a time limit and retries add."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Collection, Generator, Iterable, Mapping, Sequence
-from dataclasses import replace
 from itertools import islice
 from operator import eq
 from typing import NoReturn, TypeAlias
@@ -52,7 +51,7 @@ from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.secret_keys import secret_keys
 from smachac.ir.traversal import containers, leads_to_child, outcome_names, walk
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 from smachac.runtime.tracing.gate import Gate
 from smachac.runtime.tracing.writer import SECRET
 

@@ -8,7 +8,6 @@ import json
 import math
 import random
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import did_you_mean
@@ -23,7 +22,7 @@ from smachac.ir.nodes import Iterator, Leaf, Machine
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.script_paths import walk_script
 from smachac.ir.traversal import enclosing, outcome_names, walk
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

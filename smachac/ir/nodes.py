@@ -12,13 +12,16 @@ from collections.abc import Mapping
 from typing import ClassVar, Literal, NamedTuple, NewType, TypeAlias, TypeGuard
 
 from smachac.diagnostics.source import NOWHERE, Span, Word
-from smachac.ir.class_facts import ClassFacts
-from smachac.ir.function_facts import FunctionFacts
-from smachac.ir.message_types import DefinitionKind, Definitions, MissingDefinitions, OtherTypes
-from smachac.ir.properties import Property
-from smachac.ir.robot import Robot
 from smachac.ir.types import ANY, Type
 from smachac.records import dataclass, field
+
+TYPE_CHECKING = False  # annotations only: few machines have classes, messages or a robot
+if TYPE_CHECKING:
+    from smachac.ir.class_facts import ClassFacts
+    from smachac.ir.function_facts import FunctionFacts
+    from smachac.ir.message_types import DefinitionKind, Definitions, MissingDefinitions, OtherTypes
+    from smachac.ir.properties import Property
+    from smachac.ir.robot import Robot
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

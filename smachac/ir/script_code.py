@@ -7,8 +7,9 @@ from collections.abc import Collection
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
-from smachac.ir.expressions import Expr, parse_expression
-from smachac.ir.python_code import parse_code
+TYPE_CHECKING = False  # annotations only: few scripts contain code
+if TYPE_CHECKING:
+    from smachac.ir.expressions import Expr
 
 
 class Fields(NamedTuple):
@@ -34,6 +35,8 @@ class ScriptCode:
     @cached_property
     def tree(self) -> ast.expr | None:
         """The syntax tree as Python reads the text; None if it is not valid."""
+        from smachac.ir.python_code import parse_code
+
         try:
             return parse_code(self.text)
         except SyntaxError:
@@ -42,6 +45,8 @@ class ScriptCode:
     @cached_property
     def portable(self) -> Expr | None:
         """The tree of a portable expression; None if the text is other code."""
+        from smachac.ir.expressions import parse_expression
+
         return parse_expression(self.text)
 
     @cached_property

@@ -5,7 +5,6 @@ The notation is grammars/type.lark; `str(type)` prints it and `parse_type` parse
 
 from __future__ import annotations
 
-import json
 import re
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -75,6 +74,8 @@ ANY = Type("any")
 
 def _choice(choice: Type | int | str) -> str:
     if isinstance(choice, str) and _WORD.fullmatch(choice) is None:
+        import json
+
         return json.dumps(choice, ensure_ascii=False)
     return str(choice)
 
@@ -218,6 +219,8 @@ class _TypeBuilder:
         return int(found[0])
 
     def string(self, found: list[Any]) -> str:
+        import json
+
         return str(json.loads(found[0]))
 
 

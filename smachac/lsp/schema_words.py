@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 
 from smachac.diagnostics.source import Source
 from smachac.driver import CODES
@@ -13,7 +12,7 @@ from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree
 from smachac.lsp.repair import with_mark
 from smachac.lsp.session import View
 from smachac.lsp.word import Completion
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 from smachac.report.json_schema import Schema, generated_schemas
 
 ITEM = "-"

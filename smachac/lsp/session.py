@@ -10,7 +10,6 @@ import os
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 
 from smachac.analysis.context import Context
@@ -30,7 +29,7 @@ from smachac.frontend.types.state_types import find_state_type
 from smachac.ir.nodes import Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.lsp.repair import repaired
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 
 TYPE_CHECKING = False  # annotations only: few sessions have Python files
 if TYPE_CHECKING:

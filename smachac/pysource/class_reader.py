@@ -9,7 +9,6 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
@@ -70,6 +69,7 @@ from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 from smachac.pysource.userdata_parts import parts_of_arguments, parts_read
 from smachac.pysource.void_calls import void_calls
+from smachac.records import replace
 
 NO_STATE = FaultKind(
     name="no state",

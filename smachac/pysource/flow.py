@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable
-from dataclasses import replace
 
 from smachac.diagnostics.source import Span, Word
 from smachac.ir.class_facts import Ending
@@ -37,7 +36,7 @@ from smachac.pysource.skipped_writes import Paths, SkippedWrites
 from smachac.pysource.source import PythonText, name_span
 from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 
 NONE: frozenset[str] = frozenset()
 

@@ -11,7 +11,6 @@ import ast
 import re
 import sys
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.source import Source, Span, Word
@@ -29,6 +28,7 @@ from smachac.pysource.other_modules import module_with
 from smachac.pysource.source import PythonText
 from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
+from smachac.records import replace
 
 NO_IMPORTED_MODULE = FaultKind(
     name="no imported module",

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 
 _OPENING = re.compile(r"\{[#%{]")
-_META = re.compile(r"\{%[-+]?\s*block\s+meta\b[^%]*%\}")
+_META = r"\{%[-+]?\s*block\s+meta\b[^%]*%\}"
 _END = re.compile(r"\{%[-+]?\s*endblock[^%]*%\}")
 _CLOSING = {"#": "#}", "%": "%}", "{": "}}"}
 
@@ -43,7 +43,7 @@ def replaced(text: str, ranges: Iterator[tuple[int, int]], how: dict[str, str]) 
 def meta_block(text: str) -> tuple[int, int, int, int] | None:
     """The start of the first `{% block meta %}`, the start and end of its text, and the end of its
     closing tag; None without one that ends."""
-    opening = _META.search(text)
+    opening = re.search(_META, text)
     closing = _END.search(text, opening.end()) if opening is not None else None
     if opening is None or closing is None:
         return None

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from functools import cached_property
 from typing import Literal, TypeAlias, get_args
 
@@ -18,7 +17,7 @@ from smachac.ir.class_facts import DID_YOU_MEAN, ClassFault, FaultKind
 from smachac.pysource.source import ASSIGNED, PythonText, python_text, syntax_error
 from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 
 NO_MODULE = FaultKind(
     name="no module",

@@ -14,7 +14,7 @@ from smachac.pysource.user_code import UserCode
 TEMPLATE_FILES = ("{}.tpl.py", "{}.tpl")
 """The file names that the Python template of a state type may have."""
 
-_OTHERS = re.compile(r"\{%[-+]?\s*(?:extends|include|import|from)\s+[\"']([^\"']+)[\"']")
+_OTHERS = r"\{%[-+]?\s*(?:extends|include|import|from)\s+[\"']([^\"']+)[\"']"
 
 
 def template_finder(library: UserCode, ros: Ros) -> Callable[[str], Source | None]:
@@ -42,7 +42,7 @@ def template_sources(machine: Machine, library: UserCode) -> Iterator[tuple[str,
         seen.add(file)
         if source is not None:
             yield file, source
-            todo += _OTHERS.findall(source.text)
+            todo += re.findall(_OTHERS, source.text)
 
 
 def uses_own_templates(machine: Machine, library: UserCode) -> bool:

@@ -9,11 +9,14 @@ from typing import NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import Related
 from smachac.diagnostics.source import Source, Span, Word
-from smachac.ir.class_facts import ClassFault
 from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import walk
 from smachac.pysource.ros_names import DEFAULT_ROS, Ros
 from smachac.records import dataclass, field
+
+TYPE_CHECKING = False  # annotations only: most machines have no classes
+if TYPE_CHECKING:
+    from smachac.ir.class_facts import ClassFault
 
 Words: TypeAlias = "tuple[Word, ...]"
 

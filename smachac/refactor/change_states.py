@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 
 from smachac.diagnostics.diagnostic import did_you_mean
@@ -35,7 +34,7 @@ from smachac.ir.outcome_names import PREEMPTED, good_first, is_failure
 from smachac.ir.script_paths import sugared_child
 from smachac.ir.traversal import leads_to_child, outcome_names, walk
 from smachac.ir.types import Type
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 from smachac.refactor.cst import Collection, Item
 from smachac.refactor.edited_script import EditedScript, HasErrorsError
 from smachac.refactor.editor import RefusedError, ScriptEditor, StateItem, flow_mapping, new_atom

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from types import MappingProxyType
 
 from smachac.diagnostics.source import Source
@@ -16,7 +15,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine, Transition
 from smachac.ir.outcome_names import GOOD_OUTCOMES
 from smachac.ir.traversal import leads_to_child, outcome_names, outer_inputs, outer_outputs
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 from smachac.refactor.cst import Atom, Collection, Item
 from smachac.refactor.editor import (
     RefusedError,

@@ -5,13 +5,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from typing import Any
 
 from smachac.ir import nodes
 from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, Struct, Transition
 from smachac.ir.traversal import leads_to_child, outcome_names, remapping
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 
 NodeMap = Callable[[Node], Node]
 """A function from nodes to nodes."""

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 
 from smachac.ir.nodes import Key, Leaf, Outcome, StateMachine, Transition
 from smachac.ir.traversal import outcome_names
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
 
 from smachac.analysis.property_events import NamedStates, NameFault
 from smachac.diagnostics.source import Source, Span
@@ -20,6 +19,7 @@ from smachac.ir.properties import atoms
 from smachac.ir.python_code import parse_code
 from smachac.ir.script_paths import sugared_child
 from smachac.ir.traversal import expressions_in, leads_to_child, remapping, walk
+from smachac.records import replace
 from smachac.refactor.cst import Atom, Collection, Item
 from smachac.refactor.editor import RefusedError, ScriptEditor, add_entry, variable
 from smachac.refactor.field_order import variables_of

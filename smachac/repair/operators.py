@@ -11,7 +11,6 @@ import re
 import sys
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import islice, pairwise
 from typing import NamedTuple
 
@@ -22,12 +21,13 @@ from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.diagnostics.spelling import slips, words_of
 from smachac.frontend import schema
 from smachac.frontend.text.fields import PRESET_FIELDS
-from smachac.frontend.text.yaml_recovery import parse_with_recovery
+from smachac.frontend.text.recovering_parser import parse_with_recovery
 from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree, parse
 from smachac.ir.nodes import Machine
 from smachac.ir.outcome_names import OF_SMACH
 from smachac.ir.traversal import walk
 from smachac.ir.types import WORDS as TYPE_WORDS
+from smachac.records import replace
 
 MOST_CANDIDATES = 8
 """The most candidates for one finding: each costs a check of the whole script."""

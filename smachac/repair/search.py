@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import replace
 from functools import cache
 from itertools import chain
 from pathlib import PurePath
@@ -25,9 +24,10 @@ from smachac.driver import Analysis, MachineCheck, analyse
 from smachac.driver.batch import Batch, analyse_alone
 from smachac.frontend.config import PROJECT_FILES
 from smachac.frontend.loader import Library
-from smachac.frontend.text.yaml_recovery import parse_with_recovery
+from smachac.frontend.text.recovering_parser import parse_with_recovery
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
+from smachac.records import replace
 from smachac.repair.operators import (
     NAME,
     Around,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from typing import Any
 
 from smachac.analysis.context import Context
@@ -23,7 +22,7 @@ from smachac.ir.nodes import Preset
 from smachac.ir.printer import print_data
 from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 from smachac.report.outline import STATUS, Paragraph, at, place, way
 from smachac.runtime.tracing.writer import SECRET
 

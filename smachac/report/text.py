@@ -6,17 +6,20 @@ Sections: findings, then snippets (source lines with marks).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 from itertools import groupby
 from operator import itemgetter
 from typing import NamedTuple
 
-from smachac.diagnostics.clusters import Cluster
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, Severity
 from smachac.diagnostics.repair import Certainty
 from smachac.diagnostics.source import NOWHERE, Source, Span
+from smachac.records import replace
 from smachac.report.repair_words import in_words
 from smachac.report.terminal import Line, columns, lay_out, linked, on_one_line, visible, wrapped
+
+TYPE_CHECKING = False  # annotations only: a correct script has no clusters
+if TYPE_CHECKING:
+    from smachac.diagnostics.clusters import Cluster
 
 COLOURS = {
     "error": "1;31",

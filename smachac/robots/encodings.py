@@ -16,9 +16,9 @@ _XML_DECLARATION = re.compile(rb"<\?xml\s[^<>]*?\bencoding\s*=\s*[\"']([^\"'<>]*
 _PYTHON_DECLARATION = re.compile(
     rb"(?:[ \t\f]*(?:#[^\r\n]*)?(?:\r\n|\r|\n))?[ \t\f]*#[^\r\n]*?coding[:=][ \t]*([-\w.]+)"
 )
-_LINE_ENDS = re.compile(r"-(unix|dos|mac)\Z")
+_LINE_ENDS = r"-(unix|dos|mac)\Z"
 """The end of a name of Emacs: `utf-8-unix`."""
-_KNOWN = re.compile(
+_KNOWN = (
     r"utf-8|ascii|iso8859-\d+|cp125\d|koi8-[rtu]|shift_jis|euc_(?:jp|kr)|gb(?:k|2312|18030)|big5"
 )
 """The names that Python has for the encodings that can be declared."""
@@ -66,9 +66,9 @@ def _declared(declaration: re.Pattern[bytes], data: bytes) -> str:
         return "utf-8"
     declared = found[1].decode("ascii", "replace")
     try:
-        known = codecs.lookup(_LINE_ENDS.sub("", declared)).name
+        known = codecs.lookup(re.sub(_LINE_ENDS, "", declared)).name
     except (LookupError, ValueError):  # a name with a NUL
         known = ""
-    if _KNOWN.fullmatch(known) is None:
+    if re.fullmatch(_KNOWN, known) is None:
         raise EncodingError(declared, found.start(1))
     return known

@@ -13,10 +13,13 @@ from keyword import iskeyword
 from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, Machine, StateType
-from smachac.ir.written import Written, generated, written
 from smachac.pysource.user_code import Declared
 from smachac.records import dataclass, field
 from smachac.version import __version__
+
+TYPE_CHECKING = False  # annotations only: only pictures show the states
+if TYPE_CHECKING:
+    from smachac.ir.written import Written
 
 GROUP = "smachac.targets"
 
@@ -148,6 +151,8 @@ def view_of(machine: Machine, options: Mapping[str, str]) -> Written:
 
     Raises OptionError if it is neither `true` nor `false`.
     """
+    from smachac.ir.written import generated, written
+
     wanted = options.get("generated", "false")
     if wanted not in ("true", "false"):
         raise OptionError(f"`generated` must be true or false, not `{wanted}`")

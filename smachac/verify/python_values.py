@@ -7,7 +7,6 @@ items of an iterator or an initial value of userdata, verify plays both sides wi
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.analysis.type_inference import Types, infer
@@ -27,6 +26,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.traversal import containers, expressions_in
 from smachac.ir.types import ANY
+from smachac.records import replace
 from smachac.verify.sample_values import sample_value
 
 ITEMS = ""

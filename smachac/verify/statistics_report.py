@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 from smachac.analysis.absorbing_chain import EndlessChainError
@@ -15,6 +14,7 @@ from smachac.analysis.markov_prediction import (
 )
 from smachac.ir.nodes import Machine
 from smachac.ir.written import written
+from smachac.records import replace
 from smachac.report.json import json_text
 from smachac.report.terminal import on_one_line
 from smachac.targets.dot.graph import Notes, picture

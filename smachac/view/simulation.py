@@ -9,7 +9,7 @@ import threading
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Any
 
-from smachac.analysis.expression_types import type_of_data
+from smachac.analysis.data_types import type_of_data
 from smachac.analysis.type_lattice import fits
 from smachac.diagnostics.source import Source
 from smachac.frontend.text.data_files import plain

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from smachac.analysis.context import Context
-from smachac.checks import CODE_RULES, check_machine
+from smachac.checks import check_machine, code_rules
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.source import Source
 from smachac.driver import analyse, build
@@ -88,7 +88,7 @@ def test_a_machine_without_a_project_has_no_code() -> None:
     source, library = _library(MORE, NO_NAME, NO_EXECUTE)
     machine = analyse(source, library, []).machine
     assert machine is not None
-    assert check_machine(machine, CODE_RULES) == []
+    assert check_machine(machine, code_rules()) == []
     assert Context(machine).code_facts.files == ()
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.text.pieces import PieceTree, parse_in_pieces
-from smachac.frontend.text.yaml_recovery import parse_with_recovery
+from smachac.frontend.text.recovering_parser import parse_with_recovery
 from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree
 
 ROOT = Path(__file__).parents[2]

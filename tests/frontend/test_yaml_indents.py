@@ -9,8 +9,8 @@ import pytest
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
+from smachac.frontend.text.recovering_parser import parse_with_recovery
 from smachac.frontend.text.yaml_outline import form_of, outline, rows_of, strays_of
-from smachac.frontend.text.yaml_recovery import parse_with_recovery
 from smachac.frontend.text.yaml_tree import Map, Tree, parse
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -8,7 +8,7 @@ import pytest
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
-from smachac.frontend.text.yaml_recovery import parse_with_recovery
+from smachac.frontend.text.recovering_parser import parse_with_recovery
 from smachac.frontend.text.yaml_tree import Map, parse
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

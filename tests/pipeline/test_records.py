@@ -7,8 +7,9 @@ import dataclasses
 import inspect
 import math
 import pickle
+import pprint
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
 
@@ -25,13 +26,13 @@ OPTIONS: list[dict[str, bool]] = [
 ]
 
 
-def point(decorator: Callable[..., Any], options: dict[str, bool]) -> Any:
-    @decorator(**options)
+def point(made_by: Any, options: dict[str, bool]) -> Any:
+    @made_by.dataclass(**options)
     class Point:
         x: float
         y: float = 0.0
-        names: tuple[str, ...] = dataclasses.field(default=(), repr=False)
-        place: list[int] = dataclasses.field(default_factory=list, compare=False)
+        names: tuple[str, ...] = made_by.field(default=(), repr=False)
+        place: list[int] = made_by.field(default_factory=list, compare=False)
 
     Point.__qualname__ = "Point"
     return Point
@@ -39,7 +40,7 @@ def point(decorator: Callable[..., Any], options: dict[str, bool]) -> Any:
 
 @pytest.mark.parametrize("options", OPTIONS, ids=str)
 def test_a_class_behaves_as_that_of_the_standard_library(options: dict[str, bool]) -> None:
-    made, own = (point(item, options) for item in (records.dataclass, dataclasses.dataclass))
+    made, own = (point(item, options) for item in (records, dataclasses))
     assert str(inspect.signature(made)) == str(inspect.signature(own))
     assert made.__match_args__ == own.__match_args__
     assert hasattr(made(x=1), "__dict__") is hasattr(own(x=1), "__dict__")
@@ -119,3 +120,124 @@ def deep(levels: int) -> _Link:
     for _ in range(levels):
         link = _Link(link)
     return link
+
+
+Make = Any
+"""The module `records` or `dataclasses`."""
+
+
+def plain(made_by: Make) -> Any:
+    @made_by.dataclass(slots=True)
+    class Plain:
+        first: int
+        second: str = "b"
+        many: list[int] = made_by.field(default_factory=list)
+
+    return Plain
+
+
+def keyed(made_by: Make) -> Any:
+    @made_by.dataclass(frozen=True, slots=True, kw_only=True)
+    class Keyed:
+        kind: ClassVar[str] = "keyed"
+        name: str
+        place: int = made_by.field(default=0, compare=False, repr=False)
+        parts: tuple[int, ...] = made_by.field(default=(1, 2))
+
+        @property
+        def first(self) -> str:
+            return self.name[0]
+
+    return Keyed
+
+
+def derived(made_by: Make) -> Any:
+    base = keyed(made_by)
+
+    @made_by.dataclass(frozen=True, slots=True, kw_only=True)
+    class Derived(base):  # type: ignore[misc, valid-type]
+        kind: ClassVar[str] = "derived"
+        parts: tuple[int, ...] = ()
+        more: int
+
+    return Derived
+
+
+def with_methods(made_by: Make) -> Any:
+    @made_by.dataclass(slots=True, unsafe_hash=True)
+    class WithMethods:
+        value: int
+        half: float = 0.0
+
+        def __post_init__(self) -> None:
+            self.half = self.value / 2
+
+        def __repr__(self) -> str:
+            return "own"
+
+    return WithMethods
+
+
+def without_slots(made_by: Make) -> Any:
+    @made_by.dataclass(eq=False)
+    class WithoutSlots:
+        value: int = 3
+        made: dict[str, int] = made_by.field(default_factory=dict)
+
+    return WithoutSlots
+
+
+def empty(made_by: Make) -> Any:
+    @made_by.dataclass(slots=True)
+    class Empty:
+        pass
+
+    return Empty
+
+
+CASES = [
+    (plain, {"first": 1}, {"first": 2, "second": "c", "many": [1]}),
+    (keyed, {"name": "a"}, {"name": "b", "place": 4, "parts": ()}),
+    (derived, {"name": "a", "more": 1}, {"name": "a", "more": 2, "place": 3}),
+    (with_methods, {"value": 4}, {"value": 5}),
+    (without_slots, {}, {"value": 1, "made": {"a": 1}}),
+    (empty, {}, {}),
+]
+
+
+def facts(cls: Any, first: dict[str, Any], second: dict[str, Any]) -> dict[str, Any]:
+    """What a class is and does, with two sets of arguments."""
+    one, same, other = cls(**first), cls(**first), cls(**second)
+    parameters = inspect.signature(cls).parameters.values()
+    fields = dataclasses.fields(cls)
+    changed = dataclasses.replace(one, **second)
+    return {
+        "parameters": [(item.name, item.kind, str(item.default)) for item in parameters],
+        "fields": [(f.name, f.type, f.compare, f.repr, f.kw_only) for f in fields],
+        "match": cls.__match_args__,
+        "slots": not hasattr(one, "__dict__"),
+        "names": (cls.__name__, cls.__qualname__, cls.__module__),
+        "values": [[getattr(item, f.name) for f in fields] for item in (one, other, changed)],
+        "shown": (repr(one), repr(other)),
+        "equal": (one == same, one == other, one != same, one == 3),
+        "hashable": cls.__hash__ is not None,
+        "equal_hashes": cls.__hash__ is None or (hash(one) == hash(same)) == (one == same),
+        "copied": repr(copy.deepcopy(other)),
+        "printed": pprint.pformat(other),
+        "error": _error(cls, first),
+        "dict": dataclasses.asdict(one),
+    }
+
+
+def _error(cls: Any, arguments: dict[str, Any]) -> str:
+    with pytest.raises(TypeError) as raised:
+        cls(**arguments, unknown=1)
+    return str(raised.value)
+
+
+@pytest.mark.parametrize(("case", "first", "second"), CASES)
+def test_a_derived_class_and_one_with_methods(
+    case: Callable[[Make], Any], first: dict[str, Any], second: dict[str, Any]
+) -> None:
+    ours, theirs = case(records), case(dataclasses)
+    assert facts(ours, first, second) == facts(theirs, first, second)

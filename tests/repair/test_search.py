@@ -19,7 +19,7 @@ from smachac.diagnostics.repair import Certainty, edited_texts
 from smachac.diagnostics.source import Source
 from smachac.driver import Analysis, analyse
 from smachac.frontend.loader import memory_library
-from smachac.frontend.text.yaml_recovery import parse_with_recovery
+from smachac.frontend.text.recovering_parser import parse_with_recovery
 from smachac.repair.search import MOST_CLUSTERS, again, clusters, unknown
 from tests.trust.judged_repairs import ALL_MUTATIONS, mutated
 from tests.trust.project_text import BUILT_IN, MAIN

@@ -18,7 +18,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import Analysis, analyse
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
-from smachac.frontend.text.yaml_recovery import parse_with_recovery
+from smachac.frontend.text.recovering_parser import parse_with_recovery
 from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree, parse
 
 ROOT = Path(__file__).parents[2]

@@ -9,8 +9,8 @@ from collections.abc import Set as AbstractSet
 from functools import reduce
 
 from smachac.analysis.context import Context
+from smachac.analysis.data_types import type_of_data
 from smachac.analysis.expression_errors import FaultKind, expression_faults
-from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.fixed_lists import lacks_entry
 from smachac.analysis.type_lattice import (
     BOOL,

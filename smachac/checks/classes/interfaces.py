@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.checks.rule import rule
@@ -13,6 +12,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import renamed_name
 from smachac.ir.nodes import StateType
 from smachac.pysource.user_code import Declared, Difference, StateClass, Words
+from smachac.records import replace
 
 
 @rule(
@@ -21,6 +21,7 @@ from smachac.pysource.user_code import Declared, Difference, StateClass, Words
     Severity.ERROR,
     unsuppressible=True,
     effect="the robot runs the class, not the interface: SMACH can stop the machine with an error",
+    about_code=True,
 )
 def interfaces_differ(context: Context) -> Iterator[Finding]:
     """The class of a state type and its interface have different outcomes or keys.
@@ -87,6 +88,7 @@ def interfaces_differ(context: Context) -> Iterator[Finding]:
     Severity.ERROR,
     unsuppressible=True,
     effect="a C++ compiler refuses the class: it has the number of another interface",
+    about_code=True,
 )
 def stale_code(context: Context) -> Iterator[Finding]:
     """A C++ class was written for another version of its interface.

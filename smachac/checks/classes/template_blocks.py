@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.checks.rule import Rule
@@ -14,6 +13,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
 from smachac.pysource.jinja_tags import tags
 from smachac.pysource.user_code import TemplateBody
+from smachac.records import replace
 
 _TEST = re.compile(
     r"\{%[-+]?\s*if\s+(\w+)\s+is\s+defined\s*[-+]?%\}(.*?)\{%[-+]?\s*endif\b", re.DOTALL
@@ -27,7 +27,7 @@ def _unprinted_parts(context: Context) -> Iterator[Finding]:
         yield from _not_printed(body)
 
 
-unprinted_parts = Rule(code=template_error.code, function=_unprinted_parts)
+unprinted_parts = Rule(code=template_error.code, function=_unprinted_parts, about_code=True)
 """The warnings of SM605: what a template can print, and does not."""
 
 

@@ -11,9 +11,12 @@ from smachac.checks.help_text import other_place
 from smachac.diagnostics.diagnostic import Related
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.ir import nodes
-from smachac.ir.class_facts import ClassFacts
 from smachac.ir.nodes import Key, Leaf, Outcome, StateType
 from smachac.ir.traversal import outcome_names
+
+TYPE_CHECKING = False  # annotations only: most machines have no classes
+if TYPE_CHECKING:
+    from smachac.ir.class_facts import ClassFacts
 
 
 def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, Leaf, ClassFacts]]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.checks import notation
@@ -13,6 +12,7 @@ from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span
 from smachac.pysource.template_sources import template_sources, uses_own_templates
 from smachac.pysource.user_code import StateFault
+from smachac.records import replace
 
 
 @rule(
@@ -21,6 +21,7 @@ from smachac.pysource.user_code import StateFault
     Severity.ERROR,
     unsuppressible=True,
     effect="Python raises ImportError: the program stops when it starts",
+    about_code=True,
 )
 def code_not_found(context: Context) -> Iterator[Finding]:
     """The class that an interface names as the code of a state type does not exist, its file cannot
@@ -104,6 +105,7 @@ def _template_imports(context: Context) -> Iterator[Finding]:
     Severity.ERROR,
     unsuppressible=True,
     effect="the generated program stops with an error when it makes the state or runs it",
+    about_code=True,
 )
 def unusable_class(context: Context) -> Iterator[Finding]:
     """The class of a state type does not work as a state: a method is missing or hidden, or the

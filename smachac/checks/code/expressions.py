@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import Fault
@@ -30,6 +29,7 @@ from smachac.ir.leaf import functions
 from smachac.ir.nodes import Data, Expression, Leaf, Node, Struct
 from smachac.ir.script_code import script_code
 from smachac.ir.traversal import expressions, values
+from smachac.records import replace
 
 
 @rule(

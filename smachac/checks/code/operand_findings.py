@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import Fault, FaultKind
@@ -17,6 +16,7 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.ir.expressions import print_expression
 from smachac.ir.nodes import Leaf, is_number
+from smachac.records import replace
 
 MOST_SOURCES = 3
 """Limit on the origins of values that a finding shows."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import replace
 from functools import cached_property
 from itertools import count, islice
 from typing import NamedTuple
@@ -38,6 +37,7 @@ from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
 from smachac.ir.outcome_names import OF_SMACH
 from smachac.ir.script_paths import role, sugared_child
 from smachac.ir.traversal import outcome_names, written_children
+from smachac.records import replace
 
 EXCEPTIONS = "error"
 """The name by which a script refers to the exceptions of a state (docs/language.md)."""

@@ -10,7 +10,6 @@ from typing import NamedTuple
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import Linear, has_no_interface, unhandled
 from smachac.checks.help_text import calls, did_you_mean
-from smachac.checks.properties.failed_properties import missed_states
 from smachac.diagnostics.diagnostic import Finding
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, respelt
@@ -46,6 +45,8 @@ def hidden_groups(context: Context) -> Iterator[Hidden | Finding]:
             yield _wrong_connector(path, container)
             continue
         if missed is None:
+            from smachac.checks.properties.failed_properties import missed_states
+
             missed = missed_states(context)
         before = _before(whole, frozenset(child.name for child in hidden))
         first = _first_hidden(container, hidden, before, seen)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 from smachac.checks.help_text import calls, other_place
 from smachac.checks.type_words import placeholder
@@ -23,6 +22,7 @@ from smachac.ir.nodes import (
     Transition,
 )
 from smachac.ir.traversal import leads_to_child
+from smachac.records import replace
 
 _Never = dict[str, dict[str, tuple[str, ...]]]
 """For the states of a container by name: the outcomes that are impossible, each with the variables

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from smachac.analysis.context import Context
@@ -35,6 +34,7 @@ from smachac.ir.properties import (
     in_words,
 )
 from smachac.ir.script_paths import name_in_script, sugared_child, walk_script
+from smachac.records import replace
 
 if TYPE_CHECKING:
     from smachac.analysis.properties import Counterexample, Judgement, Visit

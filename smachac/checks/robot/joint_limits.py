@@ -5,7 +5,10 @@ from __future__ import annotations
 from smachac.analysis.type_inference import TypeFlow
 from smachac.checks.robot.literal_parts import as_float
 from smachac.ir.nodes import Data, Struct, is_number
-from smachac.ir.robot import Joint, Robot
+
+TYPE_CHECKING = False  # annotations only: few scripts have a robot
+if TYPE_CHECKING:
+    from smachac.ir.robot import Joint, Robot
 
 JOINT_TOLERANCE = 1e-4
 """Tolerance for joint limits in rad or m: they are given with four decimals."""

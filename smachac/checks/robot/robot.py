@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator
-from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import reaching_flows
@@ -32,8 +31,12 @@ from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import MOST_LISTED, listed
 from smachac.ir.nodes import Data, Leaf, Struct, is_number
-from smachac.ir.robot import Joint, Robot
 from smachac.ir.types import Type
+from smachac.records import replace
+
+TYPE_CHECKING = False  # annotations only: few scripts have a robot
+if TYPE_CHECKING:
+    from smachac.ir.robot import Joint, Robot
 
 ROTATION_TOLERANCE = 10e-3
 """Tolerance for the squared length of a quaternion, with which tf2 accepts transforms (geometry2,

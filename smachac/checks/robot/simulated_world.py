@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Literal
 
 from smachac.analysis.context import Context
@@ -12,6 +11,7 @@ from smachac.checks.help_text import other_place
 from smachac.checks.types.literals import literal_finding, reader
 from smachac.checks.types.value_places import Part
 from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.records import replace
 
 
 def loaded_too_late(

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import reaching_flows
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
 from smachac.analysis.units import FULL_TURN, conversion, other_units
-from smachac.checks.classes.class_value_types import wrong_operations
-from smachac.checks.code.operand_findings import doubtful_comparisons
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.robot.joint_limits import joint_faults
 from smachac.checks.robot.literal_parts import moves_arm, names_in, part_named, role_of
@@ -27,8 +24,12 @@ from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import both, either, listed
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Data, Leaf, Limits, StateType, Struct, VariableType, is_number
-from smachac.ir.robot import MODELS, Robot
 from smachac.ir.types import Type
+from smachac.records import replace
+
+TYPE_CHECKING = False  # annotations only: few scripts have a robot
+if TYPE_CHECKING:
+    from smachac.ir.robot import Robot
 
 
 @rule(
@@ -375,6 +376,8 @@ def _known_things(context: Context) -> Mapping[str, frozenset[str]]:
     if bodies is not None and robot is not None and (robot.scene or not scene):
         known["body"] = frozenset(bodies.values()) | robot.added | robot.scene
     if simulated:
+        from smachac.ir.robot import MODELS
+
         known["model"] = frozenset(MODELS)
     return known
 
@@ -468,8 +471,14 @@ def doubtful_unit(context: Context) -> Iterator[Finding]:
         yield from _doubtful(alike, simulated, context.machine.robot)
     for type_ in types.values():
         yield from _doubtful_defaults(type_)
-    yield from doubtful_comparisons(context)
-    yield from wrong_operations(context, "doubt")
+    if context.expression_faults:
+        from smachac.checks.code.operand_findings import doubtful_comparisons
+
+        yield from doubtful_comparisons(context)
+    if context.leaves_with_class:
+        from smachac.checks.classes.class_value_types import wrong_operations
+
+        yield from wrong_operations(context, "doubt")
 
 
 def _doubtful_defaults(type_: StateType) -> Iterator[Finding]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 from typing import NamedTuple, TypeAlias
 
 from smachac.analysis.code_slots import code_slots
@@ -72,6 +71,7 @@ from smachac.ir.message_types import (
 from smachac.ir.nodes import DEFINITION_KINDS, Data, Expression, Leaf, Node, Struct, Value, Variable
 from smachac.ir.traversal import remapping
 from smachac.ir.types import Type
+from smachac.records import replace
 
 NO_MESSAGE = frozenset(["stop", "stop_all", "remove", "remove_all"])
 """The values of the variable `action` with which a state reads no message."""

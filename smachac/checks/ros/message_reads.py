@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 from difflib import SequenceMatcher
 
 from smachac.analysis.code_slots import CodeSlot, is_condition
@@ -33,6 +32,7 @@ from smachac.ir.function_facts import Comparison, Operand, Part
 from smachac.ir.message_types import FLOATS, INTEGERS, TEXTS, Definitions, FieldType, Message
 from smachac.ir.nodes import Leaf, Node
 from smachac.ir.python_code import parse_code
+from smachac.records import replace
 
 METHODS = frozenset(
     ["serialize", "deserialize", "serialize_numpy", "deserialize_numpy"]  # ROS 1

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from typing import NamedTuple, TypeGuard
 
 from smachac.analysis.context import Context
@@ -28,13 +27,13 @@ from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.expressions import Lambda, Name, parse_expression, parts
 from smachac.ir.graph import can_end, reachable
 from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Expression, Leaf, Node, StateMachine, Transition
 from smachac.ir.outcome_names import PREEMPTED, fails, successes
 from smachac.ir.script_code import script_code
 from smachac.ir.traversal import leads_to_child, outcome_names, outer_inputs, outer_outputs, walk
+from smachac.records import replace
 
 PURE = frozenset(["abs", "bool", "float", "int", "len", "max", "min", "round", "str"])
 """Functions whose result depends on their arguments only."""
@@ -514,6 +513,8 @@ def _is_condition(node: Node) -> TypeGuard[Leaf]:
 
 def _is_pure(text: str) -> bool:
     """Whether code computes its value from userdata alone."""
+    from smachac.ir.expressions import Lambda, Name, parse_expression, parts
+
     expr = parse_expression(text)
     if expr is None:
         return False

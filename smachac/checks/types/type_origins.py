@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.checks.type_words import in_words
 from smachac.ir import nodes
@@ -27,6 +25,8 @@ def written(flow: TypeFlow) -> str:
                 return f"{cell_owner(cell)} declares `{cell.key}` as `{flow.type}`"
     what = in_words(flow.type)
     if flow.how == "value" and isinstance(flow.value, bool | float):
+        import json
+
         return f"`{cell.key}` is `{json.dumps(flow.value)}`"
     if flow.how == "computed" and isinstance(cell.node, nodes.Iterator):
         return f"{cell_owner(cell)} provides `{cell.key}` as {what}"

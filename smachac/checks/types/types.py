@@ -5,17 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from smachac.analysis.context import Context
-from smachac.analysis.expression_errors import kinds
-from smachac.analysis.expression_types import type_of_data
+from smachac.analysis.data_types import type_of_data
 from smachac.analysis.type_inference import Cell, Clash
 from smachac.analysis.type_lattice import misfit, present, widened
-from smachac.checks.classes.class_value_types import wrong_loops, wrong_writes
 from smachac.checks.edits import likely
 from smachac.checks.help_text import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.type_words import in_words
-from smachac.checks.types.clash_findings import clash_findings
-from smachac.checks.types.number_help import suggested_number
 from smachac.checks.types.type_origins import cell_owner, written
 from smachac.checks.types.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Severity
@@ -82,12 +78,18 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
               transitions: {done: done}
     """
     clashes = [clash for clash in context.clashes["type"] if not _is_function(clash)]
-    yield from clash_findings(clashes, context.machine.aliases)
+    if clashes:
+        from smachac.checks.types.clash_findings import clash_findings
+
+        yield from clash_findings(clashes, context.machine.aliases)
     yield from _lists_for_items(context)
     yield from _without_items(context)
     yield from _wrong_steps(context)
-    yield from wrong_writes(context)
-    yield from wrong_loops(context)
+    if context.leaves_with_class:
+        from smachac.checks.classes.class_value_types import wrong_loops, wrong_writes
+
+        yield from wrong_writes(context)
+        yield from wrong_loops(context)
     for type_ in context.machine.state_types.values():
         yield from _wrong_defaults(type_)
 
@@ -132,6 +134,8 @@ def _without_items(context: Context) -> Iterator[Finding]:
     for path, container in context.containers:
         if not isinstance(container, nodes.Iterator) or not container.items_key:
             continue
+        from smachac.analysis.expression_errors import kinds
+
         key = container.items_key
         cell = context.types.cells.get((path, key))
         if cell is None or kinds(cell.holds or cell.declared) != {"number"}:
@@ -232,6 +236,8 @@ def _wrong_defaults(type_: StateType) -> Iterator[Finding]:
             continue
         help = f"write a default that fits `{held.type}`, or correct the type"
         if found.given.name == "literal" and present(found.wanted).name in ("int", "float"):
+            from smachac.checks.types.number_help import suggested_number
+
             help = suggested_number(str(found.given.args[0]), present(found.wanted)) or help
         if isinstance(data, str) and data.lower() in ("none", "nil"):
             help = f"write `null` for no value: `{data}` is a text"

@@ -11,8 +11,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from smachac.analysis.expression_errors import Fault
-from smachac.analysis.expression_types import type_of_data
+from smachac.analysis.data_types import type_of_data
 from smachac.analysis.type_lattice import (
     FLOAT,
     POINT,
@@ -26,10 +25,13 @@ from smachac.analysis.type_lattice import (
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree, parse
 from smachac.ir.code_places import attribute_place, node_place
-from smachac.ir.expressions import print_expression
 from smachac.ir.nodes import Data, Expression, Struct
 from smachac.ir.script_code import script_code
 from smachac.ir.types import Type
+
+TYPE_CHECKING = False  # annotations only: few scripts have faults in code
+if TYPE_CHECKING:
+    from smachac.analysis.expression_errors import Fault
 
 LONGEST = 20_000
 """In characters. The parts of a longer value are not searched."""
@@ -162,6 +164,8 @@ def _items(data: tuple[Data, ...], wanted: Type) -> Iterator[tuple[Data, Type]]:
 
 def place_of_fault(code: Expression, fault: Fault) -> Span:
     """The place of a fault: of the name of an attribute, or of the part of the expression."""
+    from smachac.ir.expressions import print_expression
+
     tree, part = script_code(code.text).tree, script_code(print_expression(fault.expr)).tree
     text = ast.dump(part) if part is not None else ""
     for node in ast.walk(tree) if tree is not None else ():

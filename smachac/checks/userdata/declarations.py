@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import replace
 from itertools import groupby
 from typing import Literal
 
@@ -39,6 +38,7 @@ from smachac.ir.leaf import functions, variable, variable_of
 from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, Unused
 from smachac.ir.script_code import script_code
 from smachac.ir.traversal import expressions, walk
+from smachac.records import replace
 
 
 @rule(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.analysis.type_lattice import is_unknown, present
@@ -19,6 +18,7 @@ from smachac.diagnostics.spelling import guesser, words_of
 from smachac.frontend.text.yaml_tree import Map, Seq, parse
 from smachac.ir.class_facts import ClassFacts, Ending
 from smachac.ir.nodes import Leaf, StateType
+from smachac.records import replace
 
 
 @rule(

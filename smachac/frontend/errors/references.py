@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from pathlib import PurePath
 
 from smachac.diagnostics.diagnostic import (
@@ -22,14 +21,15 @@ from smachac.diagnostics.repair import Certainty, Repair
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, guesser_of, respelt
 from smachac.diagnostics.wording import listed
+from smachac.records import replace
 
-_PACKAGE = re.compile(r"package://|file://|\$\(find|\$\{|\$\(")
+_PACKAGE = r"package://|file://|\$\(find|\$\{|\$\("
 """The beginnings of paths that ROS replaces when a program is launched."""
 
 
 def package_help(path: str) -> str | None:
     """The help for a path with a part that ROS replaces."""
-    found = _PACKAGE.search(path)
+    found = re.search(_PACKAGE, path)
     if found is None:
         return None
     last = path.rpartition("/")[2]

@@ -302,7 +302,7 @@ def _variable_help(word: str, sure: str | None, names: list[str], own: list[str]
 _LONGEST_NUMBER = 20
 
 
-_DECIMALS = re.compile(r"[0-9]+ ?[A-Za-zµ%]*")
+_DECIMALS = r"[0-9]+ ?[A-Za-zµ%]*"
 """The digits of a number after its decimal comma, with a unit."""
 
 
@@ -313,7 +313,7 @@ def number_before(word: Word) -> str:
     text = word.span.source.text[max(0, start - _LONGEST_NUMBER) : start]
     before = text.removesuffix(",")
     digits = before[len(before.rstrip("0123456789")) :]
-    return digits if _DECIMALS.fullmatch(word.text) and before != text else ""
+    return digits if re.fullmatch(_DECIMALS, word.text) and before != text else ""
 
 
 @problem(

@@ -16,7 +16,7 @@ from smachac.diagnostics.diagnostic import (
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span, Word
 
-_CODE = re.compile(r"[A-Za-z]{2}\d+")
+_CODE = r"[A-Za-z]{2}\d+"
 _COMMENT = re.compile(r"#[^\S\n]*smachac:\s*allow(?P<codes>(?:[^\S\n]+[A-Za-z]{2}\d+\b[,:]?)+)")
 _BEHIND = re.compile(r"[,:]?[^\S\n]*")
 
@@ -87,7 +87,7 @@ def _without(codes: list[Span]) -> tuple[Edit, ...]:
     found = next((match_ for match_ in every if codes[0].start < match_.end()), None)
     if found is None:
         return ()
-    if len(_CODE.findall(found["codes"])) > len(codes):
+    if len(re.findall(_CODE, found["codes"])) > len(codes):
         behind = [_BEHIND.match(text, code.end, end) for code in codes]
         ends = [match_.end() for match_ in behind if match_ is not None]
         pairs = zip(codes, ends, strict=True)

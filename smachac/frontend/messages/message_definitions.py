@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Report, Severity
@@ -22,7 +21,6 @@ from smachac.frontend.messages.standard_messages import (
     standard_package,
 )
 from smachac.frontend.resolved_script import State
-from smachac.ir.class_facts import ClassFacts
 from smachac.ir.leaf import given_fields, type_text
 from smachac.ir.message_types import (
     PARTS,
@@ -40,6 +38,11 @@ from smachac.ir.message_types import (
     OtherTypes,
 )
 from smachac.ir.nodes import DEFINITION_KINDS, Expression
+from smachac.records import replace
+
+TYPE_CHECKING = False  # annotations only: most machines have no classes
+if TYPE_CHECKING:
+    from smachac.ir.class_facts import ClassFacts
 
 LONGEST = 1_000_000
 """The longest file that is read, in characters."""
@@ -50,18 +53,17 @@ MOST_CODE = 10_000
 MOST_OTHERS = 100
 """Limit on the types of a package that are searched for fields."""
 
-_NAME = re.compile(r"[A-Za-z]\w*", re.ASCII)
-_TYPE = re.compile(
+_NAME = r"[A-Za-z]\w*"
+_TYPE = (
     r"(?P<name>[A-Za-z]\w*(?:/[A-Za-z]\w*){0,2})(?:<=(?P<longest>\d{1,9}))?"
-    r"(?P<array>\[(?:(?P<size>\d{1,9})|<=(?P<most>\d{1,9}))?\])?",
-    re.ASCII,
+    r"(?P<array>\[(?:(?P<size>\d{1,9})|<=(?P<most>\d{1,9}))?\])?"
 )
 
 
 _CALLED = re.compile(r"(?<![\w.])(?:[a-z]\w*\.msg\.)?[A-Z]\w*(?=\()", re.ASCII)
 """The call of a class, such as that of a message: `Bool(`, `std_msgs.msg.Bool(`."""
 
-_MADE = re.compile(r"(Action|ActionGoal|ActionResult|ActionFeedback|Goal|Result|Feedback)\Z")
+_MADE = r"(Action|ActionGoal|ActionResult|ActionFeedback|Goal|Result|Feedback)\Z"
 """The names of messages that ROS 1 makes of an action."""
 
 
@@ -79,7 +81,7 @@ def type_name(text: str, kind: DefinitionKind) -> TypeName | None:
     """The name that a text means: `std_srvs/Trigger`, `std_srvs/srv/Trigger` or
     `std_srvs.srv.Trigger`; None for any other text."""
     parts = re.split(r"[/.]", text.strip())
-    if not all(_NAME.fullmatch(part) for part in parts):
+    if not all(re.fullmatch(_NAME, part, re.ASCII) for part in parts):
         return None
     match parts:
         case [package, name]:
@@ -310,7 +312,7 @@ def missing_definitions_of(
 
 def missing_type(word: TypeName, kind: DefinitionKind, library: Library) -> Missing | None:
     """What is known about a type that its package does not have; None if it can exist."""
-    made = _MADE.search(word.name) if kind != "srv" else None
+    made = re.search(_MADE, word.name) if kind != "srv" else None
     names = _names_in(word.package, kind, library)
     if made is not None:
         action = TypeName(word.package, word.name[: made.start()])
@@ -438,7 +440,7 @@ def _declaration(line: str, span: Span, package: str) -> MessageField | MessageC
     word, _, rest = line.replace("\t", " ").partition(" ")
     wanted = _field_type(word, package)
     rest = rest.lstrip()
-    named = _NAME.match(rest)
+    named = re.match(_NAME, rest, re.ASCII)
     if wanted is None or named is None:
         return None
     start = span.start + len(line) - len(rest)
@@ -474,7 +476,7 @@ def _without_comment(text: str) -> str:
 
 def _field_type(word: str, package: str) -> FieldType | None:
     """The type of a text; the name of a message gets the package around it if it has none."""
-    found = _TYPE.fullmatch(word)
+    found = re.fullmatch(_TYPE, word, re.ASCII)
     if found is None:
         return None
     name: str = found["name"]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal, TypeAlias, TypeVar
 
@@ -19,6 +18,7 @@ from smachac.frontend.text.data_files import plain, span_at
 from smachac.frontend.text.yaml_tree import Map, Scalar, Tree
 from smachac.ir.nodes import StateType
 from smachac.ir.robot import Arm, Joint, Robot
+from smachac.records import replace
 from smachac.robots import description, urdf
 from smachac.robots.description import NO_PARTS, Description, Part, Station, limb_names
 from smachac.robots.engine_text import engine_text

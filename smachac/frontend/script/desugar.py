@@ -9,7 +9,6 @@ inside another one has the name of its role (`INNER_NAMES`). The container also 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from typing import Any
 
 from smachac.diagnostics.source import Span
@@ -41,6 +40,7 @@ from smachac.ir.nodes import (
 from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED
 from smachac.ir.traversal import OuterNames, outcome_names, remapping
 from smachac.ir.types import optional
+from smachac.records import replace
 
 
 def desugared(node: Node, sugar: Sugar) -> Node:

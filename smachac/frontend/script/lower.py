@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from pathlib import PurePath
 from typing import Any, NamedTuple, TypeAlias
 
@@ -42,6 +41,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY
+from smachac.records import replace
 
 _VARIABLE = re.compile(r"(\.?)\{(\w+)\}")
 """A part of a claim that the value of a variable replaces."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 from smachac.diagnostics.diagnostic import Report, did_you_mean
@@ -30,6 +29,7 @@ from smachac.ir.properties import (
     Subject,
     in_words,
 )
+from smachac.records import replace
 
 if TYPE_CHECKING:
     pass
@@ -59,11 +59,9 @@ _WITHIN = re.compile(r"([0-9]{1,9})(?:[ \t]+states?)?")
 
 
 def properties_of(
-    entry: Entry | None, source: Source, library: Library, report: Report
+    entry: Entry, source: Source, library: Library, report: Report
 ) -> tuple[Property, ...]:
     """The properties of a script: a list, or the name of a file with the list."""
-    if entry is None:
-        return ()
     tree = entry.value
     if isinstance(tree, Scalar) and isinstance(tree.value, str) and not is_known_wrong(tree):
         found = _file(tree, source, library, report)

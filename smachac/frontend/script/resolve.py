@@ -7,7 +7,6 @@ every state gets its typed fields and its state type. Lowering needs no tree and
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
 from functools import cache
 from pathlib import PurePath
 from typing import Literal
@@ -49,7 +48,6 @@ from smachac.frontend.script.params import (
     recovered_look_up,
     size_up_to,
 )
-from smachac.frontend.script.properties import properties_of
 from smachac.frontend.script.resolve_cache import CachedCall, ResolveCache, same_objects
 from smachac.frontend.script.state_fields import (
     NAME_WORDS,
@@ -106,11 +104,15 @@ from smachac.frontend.types.type_annotations import (
     typed,
 )
 from smachac.frontend.types.type_names import Aliases
-from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.nodes import FixedParam, Preset, StateType
-from smachac.ir.robot import Robot
 from smachac.pysource.template_sources import TEMPLATE_FILES
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
+
+TYPE_CHECKING = False  # annotations only: most scripts have no functions or robot
+if TYPE_CHECKING:
+    from smachac.ir.function_facts import FunctionFacts
+    from smachac.ir.properties import Property
+    from smachac.ir.robot import Robot
 
 MAX_STATES = 1_000_000
 """The most states of a script with its sub-scripts."""
@@ -259,7 +261,7 @@ class _Resolver:
             missing_definitions=missing_definitions_of(base, classes, definitions, library),
             other_types=other_types_of(base, definitions, library),
             unused=self.uses.unused(self.report),
-            properties=properties_of(entries.get("properties"), source, self.library, self.report),
+            properties=self._properties(entries.get("properties"), source),
             params=params_of(entries.get("params")),
             fixed_params=tuple(self.fixed_params),
             functions=self._functions(base),
@@ -274,6 +276,13 @@ class _Resolver:
         from smachac.frontend.robots.robots import robot_of
 
         return robot_of(base, source, self.library, self.report)
+
+    def _properties(self, entry: Entry | None, source: Source) -> tuple[Property, ...]:
+        if entry is None:
+            return ()
+        from smachac.frontend.script.properties import properties_of
+
+        return properties_of(entry, source, self.library, self.report)
 
     def _functions(self, base: State) -> Mapping[str, FunctionFacts]:
         """The functions of the user that the states name. Scripts without state types of the user

@@ -11,7 +11,6 @@ finding.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import Report
@@ -24,7 +23,7 @@ from smachac.frontend.text.yaml_tree import Entry
 from smachac.frontend.types.state_types import find_state_type
 from smachac.frontend.types.type_names import Aliases
 from smachac.ir.nodes import FixedParam, Preset, StateType
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 
 Answers: TypeAlias = "list[object]"
 """The answers of a library: texts, each equal to itself alone, and names of files."""

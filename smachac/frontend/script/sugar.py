@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
@@ -38,6 +37,7 @@ from smachac.ir import durations
 from smachac.ir.durations import DURATION, SECONDS
 from smachac.ir.nodes import Expression, Outcome, StateType, Value
 from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED, is_failure
+from smachac.records import replace
 
 NAMES = frozenset(["timeout", "retry", "for_each"])
 """The fields of sugar, except those that are variables of the state type."""
@@ -66,8 +66,8 @@ SUGGESTED_PARTS: Mapping[str, str] = {
 }
 """Other words for a part of sugar, which are not its misspelt names."""
 
-_SENTENCE = re.compile(r"(?:for )?([A-Za-z_]\w*) in ([A-Za-z_]\w*)")
-_PARTS = re.compile(r"(\d+(?:\.\d+)?)\s*([a-z]+)")
+_SENTENCE = r"(?:for )?([A-Za-z_]\w*) in ([A-Za-z_]\w*)"
+_PARTS = r"(\d+(?:\.\d+)?)\s*([a-z]+)"
 
 
 def is_own(name: str, type_: StateType) -> bool:
@@ -274,7 +274,7 @@ def _suggested_duration(tree: Tree) -> str | None:
         return (
             f"write `timeout: {number.strip()}`, and `timeout: {target.strip()}` in `transitions`"
         )
-    parts = _PARTS.findall(tree.span.text)
+    parts = re.findall(_PARTS, tree.span.text)
     if len(parts) > 1 and "".join(map("".join, parts)) == "".join(tree.span.text.split()):
         units = [unit if unit in SECONDS else UNITS.get(unit, "") for _, unit in parts]
         if all(units):
@@ -430,7 +430,7 @@ def _pair_for(entry: Entry) -> str | None:
     entries = entry.value.entries if isinstance(entry.value, Map) else ()
     if entry.key.value != "for_each" or not entries:
         return None
-    sentence = _SENTENCE.fullmatch(str(entries[0].key.value))
+    sentence = re.fullmatch(_SENTENCE, str(entries[0].key.value))
     if sentence is not None and len(entries) == 1:
         return f"write `for_each: {{item: {sentence[1]}, in: {sentence[2]}}}`"
     (word, *others), items = [str(entry.key.value) for entry in entries], entries[0].value.span.text
@@ -460,7 +460,7 @@ def _mapping_for(entry: Entry, required: Mapping[str, str], own: tuple[str, ...]
     value, text = entry.value, entry.value.span.text
     if entry.key.value == "for_each":
         items = text if isinstance(value, (Seq, Scalar)) and "\n" not in text and text else "KEY"
-        sentence = _SENTENCE.fullmatch(text.strip("'\""))
+        sentence = re.fullmatch(_SENTENCE, text.strip("'\""))
         meant = required["item"], items
         item, items = (sentence[1], sentence[2]) if sentence is not None else meant
         return f"write `for_each: {{item: {item}, in: {items}}}`"
@@ -518,7 +518,7 @@ def _for_each(entry: Entry, inputs: tuple[str, ...], report: Report) -> ForEach:
     name = as_name(parts["item"], report) if "item" in parts else None
     items = as_items(parts["in"], report) if "in" in parts else unknown
     given_items = parts.get("in")
-    sentence = _SENTENCE.fullmatch(given_items.span.text) if given_items is not None else None
+    sentence = re.fullmatch(_SENTENCE, given_items.span.text) if given_items is not None else None
     if sentence is not None and given_items is not None:
         message = f"`in` has the list alone: `{sentence[1]} in` is one word too many"
         help = f"write `in: {sentence[2]}`"

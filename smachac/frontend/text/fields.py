@@ -16,7 +16,6 @@ from smachac.diagnostics.source import Span, Word, new_tuple
 from smachac.frontend import schema
 from smachac.frontend.errors.script import Owner, duplicate_key, unknown_variable, wrong_shape
 from smachac.frontend.text.values import as_value
-from smachac.frontend.text.yaml_errors import JOINED, spaced
 from smachac.frontend.text.yaml_tree import (
     Entry,
     Map,
@@ -150,7 +149,7 @@ def _recovered_entries(tree: Seq) -> tuple[Entry, ...]:
     return tuple(entries)
 
 
-_ARROW = re.compile(r"\s*(\w+)\s*(?:->|=>|\u2192|=|;|:)\s*(\w+)\s*")
+_ARROW = r"\s*(\w+)\s*(?:->|=>|\u2192|=|;|:)\s*(\w+)\s*"
 """A transition written as in a drawing, `held -> LIFT`, or with another wrong sign."""
 
 
@@ -161,7 +160,7 @@ def _arrows(tree: Tree) -> tuple[Entry, ...]:
         return ()
     entries, start = [], tree.start
     for part in re.split("[,\n]", tree.span.text):
-        found = _ARROW.fullmatch(part)
+        found = re.fullmatch(_ARROW, part)
         if found is None:
             return ()
         key, value = (
@@ -340,6 +339,8 @@ def as_map(tree: Tree, report: Report, value: str = "...") -> tuple[Entry, ...]:
     list, which is one too, the entries are those that are probably meant. `value` stands in the
     help for the value of a name alone."""
     if not isinstance(tree, Map):
+        from smachac.frontend.text.yaml_errors import JOINED, spaced
+
         nothing = isinstance(tree, Scalar) and tree.value is None
         help = "write `{}`, or remove the key" if nothing else None
         if isinstance(tree, Seq):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import io
 import re
-import tokenize
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -35,9 +34,7 @@ Parser = Callable[[Source, Report], "Tree | None"]
 """`yaml_tree.parse`, or a function that returns a tree it made before."""
 
 MARK = "smachac:"
-_COMMENT = re.compile(
-    r"(?:^|(?<=\s))#[^\S\n]*smachac:[^\S\n]*(?P<verb>[^\s]*)(?P<rest>[^\n]*)", re.M
-)
+_COMMENT = r"(?:^|(?<=\s))#[^\S\n]*smachac:[^\S\n]*(?P<verb>[^\s]*)(?P<rest>[^\n]*)"
 _CODE = re.compile(r"[^\S\n]*(?P<code>[A-Za-z]{2}\d+)\b[,:]?")
 
 
@@ -55,7 +52,7 @@ def suppressions_in(
     hidden = _scalars(source, parse)
     applied = _lines_applied_to(source)
     found: list[Suppression] = []
-    for comment in _COMMENT.finditer(source.text):
+    for comment in re.finditer(_COMMENT, source.text, re.M):
         before = bisect_right(hidden, (comment.start(), len(source.text)))
         if before and comment.start() < hidden[before - 1][1]:
             continue
@@ -89,6 +86,8 @@ def _scalars(source: Source, parse: Parser) -> list[tuple[int, int]]:
 def _strings(source: Source) -> Iterator[tuple[int, int]]:
     """The ranges of the strings of a Python text, in order, as far as it can be read."""
     starts = source.line_starts
+    import tokenize
+
     with contextlib.suppress(tokenize.TokenError, SyntaxError):
         for token in tokenize.generate_tokens(io.StringIO(source.text, newline="\n").readline):
             if MARK in token.string and token.type != tokenize.COMMENT:

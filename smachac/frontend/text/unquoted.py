@@ -20,9 +20,9 @@ from smachac.ir.script_code import script_code
 _NAME = r"[A-Za-z_][A-Za-z0-9_]*"
 _QUALIFIED = rf"(?:::)?{_NAME}(?:::{_NAME})*"
 _ANGLES = r"(?:<[\w:, <>]*>)?"
-_HEADER = re.compile(r"[\w./+-]+", re.ASCII)
-_CLASS = re.compile(_QUALIFIED + _ANGLES, re.ASCII)
-_PARAMETER = re.compile(rf"(?:const +)?{_QUALIFIED}{_ANGLES}(?: *[&*] *| +){_NAME}", re.ASCII)
+_HEADER = r"[\w./+-]+"
+_CLASS = _QUALIFIED + _ANGLES
+_PARAMETER = rf"(?:const +)?{_QUALIFIED}{_ANGLES}(?: *[&*] *| +){_NAME}"
 
 
 def is_name(text: str) -> bool:
@@ -55,12 +55,12 @@ def is_expression(text: str) -> bool:
 
 def is_header(text: str) -> bool:
     """The path of a C++ header, as in `#include "..."`."""
-    return _HEADER.fullmatch(text) is not None
+    return re.fullmatch(_HEADER, text, re.ASCII) is not None
 
 
 def is_class(text: str) -> bool:
     """The qualified name of a C++ class."""
-    return _CLASS.fullmatch(text) is not None
+    return re.fullmatch(_CLASS, text, re.ASCII) is not None
 
 
 def parameters(text: str) -> list[str]:
@@ -77,7 +77,9 @@ def parameters(text: str) -> list[str]:
 
 def are_parameters(text: str) -> bool:
     """Parameters of a C++ function, each a type and a name."""
-    return all(_PARAMETER.fullmatch(parameter) is not None for parameter in parameters(text))
+    return all(
+        re.fullmatch(_PARAMETER, parameter, re.ASCII) is not None for parameter in parameters(text)
+    )
 
 
 Shape = tuple[Callable[[str], bool], str, str]

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from smachac.frontend.text.yaml_tree import Joined, Map, Scalar, Seq, Tree, is_known_wrong
-from smachac.ir.expressions import looks_like_expression, parse_expression
 from smachac.ir.nodes import Data, Expression, LookUp, Struct, Value
-from smachac.ir.python_code import parse_code
 
 UNKNOWN = "..."
 """The code in place of a value that was reported: it has no type, so no rule judges it."""
@@ -75,6 +73,8 @@ def _data(tree: Tree, code: bool, ticks: bool = False) -> Data:
 
 def _is_python(text: str) -> bool:
     """Whether a text is an expression of Python; SMACHA prints a text with a call as code."""
+    from smachac.ir.python_code import parse_code
+
     try:
         parse_code(text.strip())
     except SyntaxError:
@@ -94,6 +94,15 @@ def _scalar(tree: Scalar, code: bool) -> Data:
         return Expression(text=text[1:-1].strip(), span=tree.span)
     if code:
         return Expression(text=text, span=tree.span)
-    if tree.plain and looks_like_expression(value) and parse_expression(value) is not None:
+    if tree.plain and _is_expression(value):
         return Expression(text=text, span=tree.span)
     return value
+
+
+def _is_expression(text: str) -> bool:
+    """Whether a plain text is code: a call or a dotted name. Most are words, which are neither."""
+    if text.isidentifier():
+        return False
+    from smachac.ir.expressions import looks_like_expression, parse_expression
+
+    return looks_like_expression(text) and parse_expression(text) is not None

@@ -61,12 +61,12 @@ class _Change(NamedTuple):
         return self._replace(at=self.at + by)
 
 
-def parse_with_recovery(source: Source, report: Report) -> Tree | None:
-    """As `yaml_tree.parse`; of a text with a lost or wrong sign, the tree without that fault."""
-    found: Report = []
-    anomalies = ParseAnomalies([], [], [])
-    tree = parse(source, found, anomalies)
-    if not any(anomalies) or len(source.text) > MOST_CHARACTERS:
+def recovered(
+    source: Source, tree: Tree | None, found: Report, anomalies: ParseAnomalies, report: Report
+) -> Tree | None:
+    """The tree of a text without a lost or wrong sign. `tree`, `found` and `anomalies` are those of
+    the text as it is."""
+    if len(source.text) > MOST_CHARACTERS:
         report.extend(found)
         return tree
     if anomalies.stops and CONFLICT.search(source.text) is not None:

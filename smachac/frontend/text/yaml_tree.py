@@ -18,15 +18,6 @@ from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Piece, Source, Span, Word, new_tuple
 from smachac.frontend.errors.script import duplicate_key, too_big, wrong_shape, yaml_syntax
-from smachac.frontend.text.yaml_errors import (
-    JOINED,
-    SPACE_MISSING,
-    anchor_fault,
-    spaced,
-    stopped_at,
-    syntax_error,
-    too_deep_at,
-)
 from smachac.records import dataclass, field
 from smachac.robots.core_schema import WORDS, value_of
 
@@ -210,17 +201,13 @@ def fits_limits(source: Source, report: Report) -> bool:
     return bad is None
 
 
-# The characters that are not printable: YAML 1.2.2, section 5.1.
-_UNPRINTABLE = re.compile(
-    "[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
-)
-
-
 def _unprintable(text: str) -> re.Match[str] | None:
-    """The first character that is not printable."""
+    """The first character that is not printable: YAML 1.2.2, section 5.1."""
     if text.replace("\n", "").isprintable():  # quicker; fewer characters are printable for Python
         return None
-    return _UNPRINTABLE.search(text)
+    # Compiled here, because that takes 5 ms, and few texts have such characters.
+    unprintable = "[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
+    return re.search(unprintable, text)
 
 
 def events(text: str) -> Iterator[Any]:
@@ -294,6 +281,8 @@ def _build(
     try:
         builder.drive(found)
     except MarkedYAMLError as error:
+        from smachac.frontend.text.yaml_errors import stopped_at, syntax_error, too_deep_at
+
         builder.items = []
         deep = too_deep_at(error)
         if deep is not None:
@@ -481,6 +470,8 @@ class _Builder:
 
     def _check_anchor(self, event: Any) -> None:
         """Reports an anchor of which libyaml reads a part as the value, `&left:home 0.5`."""
+        from smachac.frontend.text.yaml_errors import anchor_fault
+
         fault = anchor_fault(self.source, event.start_mark.index)
         if fault is not None:
             self.report.append(fault)
@@ -659,6 +650,8 @@ class _Builder:
         text = key.value
         if value.start != value.end or not key.plain or not isinstance(text, str):
             return key, value
+        from smachac.frontend.text.yaml_errors import JOINED, SPACE_MISSING, spaced
+
         if JOINED.fullmatch(text) is None or key.end - key.start != len(text):
             return key, value
         colon = key.start + text.index(":")

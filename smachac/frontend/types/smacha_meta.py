@@ -21,19 +21,20 @@ from smachac.records import dataclass
 _BODY = re.compile(r"\{%[-+]?\s*block\s+body\b")
 _BODY_TEXT = re.compile(r"\{%[-+]?\s*block\s+body\b[^%]*%\}(.*?)\{%[-+]?\s*endblock\b", re.DOTALL)
 _ONLY_SUPER = re.compile(r"\s*\{\{[-+]?\s*super\s*\(\s*\)\s*[-+]?\}\}\s*")
-_AROUND = re.compile(r"\{\{[-+]?\s*(?:body\b|super\s*\()")
+_AROUND = r"\{\{[-+]?\s*(?:body\b|super\s*\()"
 _EXTENDS = re.compile(r"\{%[-+]?\s*extends\s+[\"']([^\"']+)[\"']")
-_OUTCOMES = re.compile(r"\boutcomes\s*=\s*\[([^\[\]{}]*)\]")
+_OUTCOMES = r"\boutcomes\s*=\s*\[([^\[\]{}]*)\]"
 _DEFAULT = re.compile(r"\bdef\s+\w+\([^()]*$")
 _KEYS = re.compile(r"\b(input|output)_keys\s*=\s*\[([^\[\]{}]*)\]")
-_BRINGS = re.compile(r"\s*(?:[-+]\s*)?(?:extends|include|import|from)\b\s*(.*)", re.DOTALL)
-_INIT = re.compile(
-    r"\b(?:State|super\([^()]*\))\.__init__\(\s*(?:self\s*,\s*)?(?:outcomes\s*=\s*)?\[([^\[\]{}]*)\]"
+_BRINGS = r"\s*(?:[-+]\s*)?(?:extends|include|import|from)\b\s*(.*)"
+_INIT = (
+    r"\b(?:State|super\([^()]*\))\.__init__"
+    r"\(\s*(?:self\s*,\s*)?(?:outcomes\s*=\s*)?\[([^\[\]{}]*)\]"
 )
-_MAKER = re.compile(r"\bdef\s+__init__\s*\(([^()]*)\)")
-_WORD = re.compile(r"[^\W\d]\w*")
-_FILES = re.compile(r"[\"']([^\"']+)[\"']")
-_QUOTED = re.compile(r"([\"'])(\w+)\1")
+_MAKER = r"\bdef\s+__init__\s*\(([^()]*)\)"
+_WORD = r"[^\W\d]\w*"
+_FILES = r"[\"']([^\"']+)[\"']"
+_QUOTED = r"([\"'])(\w+)\1"
 
 
 PRINTED_TYPES = frozenset(["int", "float", "bool", "one_of"])
@@ -128,7 +129,7 @@ def read_meta(template: Source) -> Meta | None:
 def _kind(word: str, template: Source) -> StateKind:
     """The kind that a meta block names. Some states of SMACHA have the kind `container`, although
     they print no children: their kind is `state`."""
-    alone = has_body(template) and _AROUND.search(template.text) is None
+    alone = has_body(template) and re.search(_AROUND, template.text) is None
     return (
         "base" if word == "Base" else "container" if word == "Container" and not alone else "state"
     )
@@ -137,7 +138,7 @@ def _kind(word: str, template: Source) -> StateKind:
 def outcomes_in_code(template: Source) -> tuple[Outcome, ...]:
     """The outcomes of the only class of states in a template, if they are constants and not the
     default value of a parameter."""
-    found = list(_OUTCOMES.finditer(template.text))
+    found = list(re.finditer(_OUTCOMES, template.text))
     if found and _DEFAULT.search(template.text, 0, found[0].start()) is not None:
         return ()
     return _quoted_outcomes(template, found[0]) if len(found) == 1 else ()
@@ -146,7 +147,7 @@ def outcomes_in_code(template: Source) -> tuple[Outcome, ...]:
 def class_outcomes(template: Source) -> tuple[Outcome, ...]:
     """The outcomes that the only class of states in a template passes to `smach.State` first, as
     constants; nothing if they are computed or others are registered."""
-    found = list(_INIT.finditer(template.text))
+    found = list(re.finditer(_INIT, template.text))
     if len(found) != 1 or "register_outcomes" in template.text:
         return ()
     return _quoted_outcomes(template, found[0])
@@ -154,12 +155,12 @@ def class_outcomes(template: Source) -> tuple[Outcome, ...]:
 
 def _quoted_outcomes(template: Source, names: re.Match[str]) -> tuple[Outcome, ...]:
     """The outcomes that a list in a template names; nothing if it is not of constants only."""
-    if _QUOTED.sub("", names[1]).strip(", \n\t"):
+    if re.sub(_QUOTED, "", names[1]).strip(", \n\t"):
         return ()
     start = names.start(1)
     return tuple(
         Outcome(name=word[2], span=Span(template, start + word.start(2), start + word.end(2)))
-        for word in _QUOTED.finditer(names[1])
+        for word in re.finditer(_QUOTED, names[1])
     )
 
 
@@ -168,7 +169,7 @@ def default_keys(template: Source) -> Mapping[str, tuple[Key, ...]]:
 
     A list that the template gives elsewhere too may replace the default, which then does not count.
     """
-    makers = list(_MAKER.finditer(template.text))
+    makers = list(re.finditer(_MAKER, template.text))
     if len(makers) != 1:
         return {}
     every = [found.group(1) for found in _KEYS.finditer(template.text)]
@@ -182,7 +183,7 @@ def default_keys(template: Source) -> Mapping[str, tuple[Key, ...]]:
                 name=word.group(2),
                 span=Span(template, start + word.start(2), start + word.end(2)),
             )
-            for word in _QUOTED.finditer(found.group(2))
+            for word in re.finditer(_QUOTED, found.group(2))
         )
     return keys
 
@@ -191,7 +192,7 @@ def keys_in_code(template: Source) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The input and output keys that the code of a template lists."""
     found: dict[str, dict[str, None]] = {"input": {}, "output": {}}
     for keys in _KEYS.finditer(template.text):
-        for word in _QUOTED.finditer(keys.group(2)):
+        for word in re.finditer(_QUOTED, keys.group(2)):
             found[keys.group(1)][word.group(2)] = None
     return tuple(found["input"]), tuple(found["output"])
 
@@ -205,7 +206,7 @@ def body_words(file: str, find: Callable[[str], Source | None]) -> Iterator[str]
         if template is None:
             return
         for body in _BODY_TEXT.findall(template.text):
-            yield from (word for _, word in _QUOTED.findall(body))
+            yield from (word for _, word in re.findall(_QUOTED, body))
         file = extended(template)
 
 
@@ -221,11 +222,13 @@ def words_used(file: str, find: Callable[[str], Source | None]) -> frozenset[str
             return None
         for start, end in tags(template.text, "%{"):
             tag = template.text[start + 2 : end - 2]
-            words.update(_WORD.findall(tag))
-            brings = _BRINGS.match(tag) if template.text.startswith("{%", start) else None
+            words.update(re.findall(_WORD, tag))
+            brings = (
+                re.match(_BRINGS, tag, re.DOTALL) if template.text.startswith("{%", start) else None
+            )
             if brings is None:
                 continue
-            files = _FILES.findall(brings.group(1)) if brings.group(1)[:1] in "\"'[(" else []
+            files = re.findall(_FILES, brings.group(1)) if brings.group(1)[:1] in "\"'[(" else []
             if not files:
                 return None
             todo += [file for file in files if file not in seen]

@@ -7,7 +7,6 @@ template without either is an open type: any field is accepted, and nothing is k
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import TypeVar, get_args
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, did_you_mean
@@ -44,7 +43,6 @@ from smachac.frontend.types.value_facts import (
     limits_of,
     named,
 )
-from smachac.ir.class_facts import STATE_PARAMETERS, ClassFacts
 from smachac.ir.nodes import (
     FunctionResult,
     Key,
@@ -58,6 +56,11 @@ from smachac.ir.nodes import (
 from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.ir.types import ANY, Type, optional
 from smachac.pysource.template_sources import TEMPLATE_FILES
+from smachac.records import replace
+
+TYPE_CHECKING = False  # annotations only: most state types have no class
+if TYPE_CHECKING:
+    from smachac.ir.class_facts import ClassFacts
 
 _SECTIONS = ("variables", "input_keys", "output_keys", "outcomes", "writes", "code")
 """The fields of an interface that are mappings of names."""
@@ -643,9 +646,13 @@ def _read_template(
 def _parameters(facts: ClassFacts | None) -> dict[str, VariableType]:
     """The variables of a template without an interface: the parameters of its constructor."""
     known = facts.parameters if facts is not None else None
+    if not known:
+        return {}
+    from smachac.ir.class_facts import STATE_PARAMETERS
+
     return {
         parameter.word.text: VariableType(name=parameter.word.text, required=parameter.required)
-        for parameter in known or ()
+        for parameter in known
         if parameter.word.text not in STATE_PARAMETERS
     }
 

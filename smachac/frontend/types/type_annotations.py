@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source, Word
@@ -13,6 +12,7 @@ from smachac.frontend.text.fields import PRESET_FIELDS, as_pairs, is_long_form
 from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Tree, is_known_wrong
 from smachac.frontend.types.type_names import WORD, Aliases, field_name, filled
 from smachac.ir.types import WORDS, Type, parse_type, unknown_words
+from smachac.records import replace
 
 TYPED = ("input_keys", "output_keys", "userdata")
 """The fields that have types."""

@@ -4,12 +4,15 @@ what a script declares, and the template that makes the state."""
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.frontend.loader import Library
 from smachac.frontend.types import smacha_meta
-from smachac.ir.class_facts import ClassFacts, StateCall
+from smachac.records import replace
+
+TYPE_CHECKING = False  # annotations only: most state types have no class
+if TYPE_CHECKING:
+    from smachac.ir.class_facts import ClassFacts, StateCall
 
 ALL_GIVEN = frozenset(["variables", "input_keys", "output_keys", "outcomes"])
 
@@ -112,4 +115,6 @@ def _state_call(facts: ClassFacts, file: str, body: str, library: Library) -> St
     own = library.own_template(_STATE_TEMPLATE) is not None
     if facts.parameters is None or template is None or body != _STATE_TEMPLATE or own:
         return None
+    from smachac.ir.class_facts import StateCall
+
     return StateCall(place=smacha_meta.extended_span(template), parameters=facts.parameters)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Mapping
 
@@ -31,4 +30,6 @@ def record_text(value: object) -> str | None:
 
 def field_name(name: str) -> str:
     """The name of a field of a record as a type has it."""
+    import json
+
     return name if name.isidentifier() else json.dumps(name)

@@ -12,7 +12,10 @@ from smachac.frontend.errors.script import wrong_shape
 from smachac.frontend.text.fields import name_of
 from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq
 from smachac.frontend.types.interface_code import Section
-from smachac.ir.class_facts import ClassFacts
+
+TYPE_CHECKING = False  # annotations only: most machines have no classes
+if TYPE_CHECKING:
+    from smachac.ir.class_facts import ClassFacts
 
 
 def lost_outputs(sections: Mapping[str, Section], facts: ClassFacts | None) -> tuple[Word, ...]:

@@ -182,14 +182,16 @@ def _bound(tree: Map, name: str, type_: Type, report: Report) -> float | None:
     return None
 
 
-_DIGITS = re.compile(r"[-+]?\d*\.?\d+")
+_DIGITS = r"[-+]?\d*\.?\d+"
 
 
 def _number_in(tree: Tree) -> str:
     """The number that begins a text, or is the only item of a list; empty without one."""
     if isinstance(tree, Seq) and len(tree.items) == 1:
         tree = tree.items[0]
-    found = _DIGITS.match(str(tree.value).replace(",", ".")) if isinstance(tree, Scalar) else None
+    found = (
+        re.match(_DIGITS, str(tree.value).replace(",", ".")) if isinstance(tree, Scalar) else None
+    )
     return found[0] if found is not None else ""
 
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import PurePath
 
 from smachac.diagnostics.source import Source, Span
@@ -20,6 +19,7 @@ from smachac.pysource.machines.state_comments import StateComments
 from smachac.pysource.machines.values import Class, Function, Instance, ModuleValue, Value
 from smachac.pysource.modules import Module, module_of
 from smachac.pysource.user_code import UserCode
+from smachac.records import replace
 
 
 class ClassReader:

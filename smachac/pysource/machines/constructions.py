@@ -13,7 +13,6 @@ import itertools
 import math
 import re
 from collections.abc import Hashable, Iterator, Mapping
-from dataclasses import replace
 from pathlib import PurePath
 from typing import TypeAlias
 
@@ -49,7 +48,7 @@ from smachac.pysource.machines.values import (
 )
 from smachac.pysource.source import PythonText
 from smachac.pysource.syntax_tree import walk_code
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 
 _FUNCTIONS = ("cb", "callback", "handler")
 """How the names of parameters end that take a function."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.source import Span, Word
@@ -21,6 +20,7 @@ from smachac.pysource.machines.values import (
     truth,
 )
 from smachac.pysource.syntax_tree import walk_code
+from smachac.records import replace
 
 
 class Choice(NamedTuple):

@@ -9,7 +9,6 @@ from __future__ import annotations
 import ast
 import contextlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import Any, Literal, Protocol
 
 from smachac.diagnostics.source import Span
@@ -59,7 +58,7 @@ from smachac.pysource.machines.values import (
 )
 from smachac.pysource.machines.wrong_calls import Signature, signature_of, wrong_call
 from smachac.pysource.syntax_tree import walk_code
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 
 MOST_STEPS, MOST_TIMES = 150_000, 2
 """The most statements and expressions that are evaluated for the main part of a file, or for one of

@@ -5,7 +5,6 @@ classes have in common.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.source import Span
@@ -29,7 +28,7 @@ from smachac.pysource.machines.values import (
     truth,
 )
 from smachac.pysource.machines.wrong_calls import Signature
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 
 Run = Callable[[Interpreter, Arguments, "Span | None"], Value]
 """A model of a function: what a call returns and changes."""

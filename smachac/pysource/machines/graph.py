@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import PurePath
 from typing import Any, Literal, NamedTuple, Protocol
 
@@ -63,6 +62,7 @@ from smachac.pysource.machines.values import (
     sequence,
     truth,
 )
+from smachac.records import replace
 
 ELSEWHERE = "?"
 """The name of the state in place of all that is not known of a container."""

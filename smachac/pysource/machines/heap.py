@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import replace
 from typing import Any, TypeAlias, TypeVar
 
 from smachac.pysource.machines.values import (
@@ -18,7 +17,7 @@ from smachac.pysource.machines.values import (
     newest,
     one_of,
 )
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 
 T = TypeVar("T")
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 
 from smachac.diagnostics.source import Source, Span
@@ -27,7 +26,7 @@ from smachac.ir.nodes import (
     Value,
 )
 from smachac.pysource.machines.constructions import Argument, Construction, Names
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 from smachac.refactor.imports.xml_source import (
     Edges,
     Loader,

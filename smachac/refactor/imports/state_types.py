@@ -7,7 +7,6 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from pathlib import Path
 
 from smachac.diagnostics.source import Span
@@ -16,7 +15,7 @@ from smachac.ir.nodes import Expression, Key, Leaf
 from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type
 from smachac.pysource.machines.constructions import Argument, Construction
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 from smachac.refactor.imports.yaml_text import mapping_text, name_text, names_text, quoted
 
 OPTIONAL = Type("optional", (ANY,))

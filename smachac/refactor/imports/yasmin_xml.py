@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Container, Iterable, Mapping
-from dataclasses import replace
 from typing import TypeAlias
 
 from smachac.diagnostics.source import Source, Span
@@ -29,6 +28,7 @@ from smachac.ir.nodes import (
     Value,
 )
 from smachac.pysource.machines.constructions import Argument, Construction, Names
+from smachac.records import replace
 from smachac.refactor.imports.xml_source import (
     Edges,
     Loader,

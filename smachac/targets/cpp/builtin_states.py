@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from typing import Protocol
 
 from smachac.diagnostics.source import Span
@@ -12,7 +11,7 @@ from smachac.ir.nodes import Data, Expression, Iterator, Leaf, StateType, Struct
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import own_outcomes
 from smachac.ir.types import Type
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 from smachac.targets.cpp.bounded import is_loose, loose
 from smachac.targets.cpp.dialect import Dialect
 from smachac.targets.cpp.expressions import (

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import replace
 from itertools import islice
 from typing import NamedTuple
 
@@ -30,7 +29,7 @@ from smachac.ir.nodes import (
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import ends_preempted, leads_to_child, own_outcomes, walk
 from smachac.ir.types import Type
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 from smachac.targets.cpp.builtin_states import LeafCode
 from smachac.targets.cpp.expressions import cpp_expression, cpp_function
 from smachac.targets.cpp.identifiers import identifier

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import guesser
@@ -21,7 +20,7 @@ from smachac.pysource.cpp_text import LONGEST, Part, class_head, outcome_words, 
 from smachac.pysource.modules import CLASS_ELSEWHERE, NO_CLASS
 from smachac.pysource.other_modules import file_with
 from smachac.pysource.user_code import Declared, Difference, Words
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 from smachac.targets.cpp.constructors import (
     EXTRA_PARAMETER,
     NO_CONSTRUCTOR_PARAMETER,

@@ -10,7 +10,6 @@ from __future__ import annotations
 import ast
 import itertools
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 from smachac.diagnostics.source import assert_never
 from smachac.ir.expressions import (
@@ -35,7 +34,7 @@ from smachac.ir.expressions import (
 )
 from smachac.ir.python_code import parse_code
 from smachac.ir.types import Type
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 from smachac.targets.cpp import builtin_functions, literals, operators
 from smachac.targets.cpp.dialect import BLOCKING, STEPPED, Dialect
 from smachac.targets.cpp.literals import stored

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.ir.nodes import Iterator, Leaf, Machine, Node
 from smachac.ir.traversal import walk
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 from smachac.targets import COMMENT_WIDTH, comment_lines, made_by, stem
 from smachac.targets.cpp.bounded import most_bytes
 from smachac.targets.cpp.builtin_states import LeafCode, built_in, enumeration

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import replace
 
 from smachac.analysis.type_inference import infer
 from smachac.diagnostics.diagnostic import Report
@@ -15,7 +14,7 @@ from smachac.ir.script_paths import script_paths
 from smachac.ir.secret_keys import secret_keys
 from smachac.ir.traversal import OuterNames, containers, outcome_names, remapping, walk
 from smachac.ir.types import ANY, Bounds, Type
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 from smachac.targets import comment
 from smachac.targets.cpp.bounded import bounded, loose
 from smachac.targets.cpp.dialect import BLOCKING, FAULT, STEPPED, Dialect

@@ -10,13 +10,12 @@ from __future__ import annotations
 import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Key, Machine, StateType
 from smachac.ir.types import ANY, Bounds, CppClass, Type, parse_type
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 from smachac.targets.cpp.bounded import bounded
 from smachac.targets.cpp.identifiers import identifier, member_identifier, outermost
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, fields_of, plain

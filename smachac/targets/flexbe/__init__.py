@@ -8,10 +8,10 @@ of them, package.py the other files of the packages, and names.py has the names 
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Report, has_errors, in_order
 from smachac.ir.nodes import Checked, Machine
+from smachac.records import replace
 from smachac.targets import BuildContext, Files, Target, stem
 from smachac.targets.errors import unsupported_by_target
 from smachac.targets.flexbe.behavior import Behavior, behavior_text

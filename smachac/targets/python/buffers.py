@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import (
@@ -21,7 +20,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
 from smachac.ir.nodes import Leaf, Node, StateType
 from smachac.pysource.ros_names import Ros
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 from smachac.targets import BuildContext
 from smachac.targets.errors import defined_twice, python_2_code
 from smachac.targets.python import structure

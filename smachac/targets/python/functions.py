@@ -10,7 +10,6 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from dataclasses import replace
 from keyword import iskeyword
 from pathlib import PurePath
 
@@ -26,7 +25,7 @@ from smachac.ir.nodes import (
 from smachac.ir.nodes import Iterator as IteratorNode
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import containers, expressions, walk
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 
 MOST_STATES = 8
 """The most states that a container has which is built inside the function of its parent."""

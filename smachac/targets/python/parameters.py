@@ -8,7 +8,6 @@ fixed when the program is generated.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import replace
 from keyword import iskeyword
 
 from smachac.diagnostics.diagnostic import Diagnostic, Severity
@@ -18,7 +17,7 @@ from smachac.ir.nodes import Iterator as IteratorNode
 from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.ir.traversal import walk
 from smachac.ir.types import ANY, Type
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 from smachac.targets.errors import fixed_param
 from smachac.targets.python import structure
 from smachac.targets.python.formatter import (

@@ -16,9 +16,8 @@ from smachac.pysource.ros_names import ROS_VERSIONS, Ros
 from smachac.records import dataclass
 from smachac.targets import BuildContext, OptionError
 from smachac.targets.errors import unsupported_by_target
-from smachac.targets.python.python2 import parsed
 
-_WORDS = re.compile(r"[/.]")
+_WORDS = r"[/.]"
 
 OTHER_MODULES = {
     1: ("rclpy", "rclpy_action", "rclpy_lifecycle"),
@@ -84,7 +83,7 @@ def ros_type(text: str, module: str, ros: Ros) -> RosType | None:
     An action of ROS 1 is the message `TestAction`, one of ROS 2 the type `Test`; either name is
     read for both.
     """
-    words = _WORDS.split(text)
+    words = re.split(_WORDS, text)
     if len(words) < 2 or not all(word.isidentifier() for word in words):
         return None
     name = words[-1]
@@ -122,6 +121,8 @@ def unsupported(machine: Machine, ros: Ros) -> Iterator[Diagnostic]:
         for expression in expressions(node):
             if not any(name in expression.text for name in OTHER_MODULES[ros]):
                 continue
+            from smachac.targets.python.python2 import parsed
+
             tree = parsed(expression.text.strip())
             used = other_modules(tree, ros) if isinstance(tree, ast.Module) else ()
             for name in dict.fromkeys(name for _, name in used):

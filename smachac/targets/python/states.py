@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import replace
 from itertools import chain, count
 from textwrap import indent
 
@@ -30,7 +29,7 @@ from smachac.ir.nodes import (
     Variable,
 )
 from smachac.ir.traversal import own_outcomes
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 from smachac.targets.python import structure
 from smachac.targets.python.add_call import NotAddedError, OtherContainerError, adapted
 from smachac.targets.python.buffers import (

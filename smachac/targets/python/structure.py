@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
 from keyword import iskeyword
 
 from smachac.diagnostics.source import assert_never
@@ -21,6 +20,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.nodes import Iterator as IteratorNode
 from smachac.ir.traversal import ends_preempted
+from smachac.records import replace
 from smachac.targets import comment, comment_lines
 from smachac.targets.python.formatter import (
     WIDTH,

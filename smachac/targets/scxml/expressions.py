@@ -12,7 +12,6 @@ import json
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 
 from smachac.analysis.expression_types import body_of, type_of
 from smachac.analysis.type_lattice import BOOL, NONE, STR, item_of, mapping, plain, present
@@ -41,7 +40,7 @@ from smachac.ir.expressions import (
 )
 from smachac.ir.nodes import Data, Expression, Struct
 from smachac.ir.types import ANY, Type
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 
 LARGEST = 2**53 - 1
 """The largest integer that JavaScript represents exactly, with all below it."""

@@ -8,10 +8,10 @@ prints them, package.py the files of a package of ROS 2.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Report, has_errors, in_order
 from smachac.ir.nodes import Checked
+from smachac.records import replace
 from smachac.targets import BuildContext, Files, Target, made_by, stem
 from smachac.targets.errors import hiding_file, unsupported_by_target
 from smachac.targets.python import TARGET as PYTHON

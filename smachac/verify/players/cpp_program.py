@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from importlib import resources
 
 from smachac.diagnostics.diagnostic import Report, in_order
@@ -20,7 +19,7 @@ from smachac.ir.nodes import Key, Leaf, Node, Outcome, StateMachine, StateType
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import containers, own_outcomes, walk
 from smachac.ir.types import Type
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 from smachac.targets.cpp.builtin_states import enumeration
 from smachac.targets.cpp.header import header_of
 from smachac.targets.cpp.identifiers import identifier

@@ -6,14 +6,13 @@ It contains its test cases and reads nothing, so it also runs on a microcontroll
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from importlib import resources
 
 from smachac.ir.nodes import Leaf, StateType
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import own_outcomes
 from smachac.ir.types import Type
-from smachac.records import dataclass
+from smachac.records import dataclass, replace
 from smachac.targets.cpp.bounded import loose
 from smachac.targets.cpp.builtin_states import enumeration
 from smachac.targets.cpp.identifiers import identifier

@@ -12,13 +12,13 @@ import copy
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import replace
 from functools import partial
 from importlib import import_module
 from pathlib import Path, PurePosixPath
 from typing import Any
 
 from smachac.ir.nodes import Machine
+from smachac.records import replace
 from smachac.runtime.tracing import trace
 from smachac.targets.flexbe.behavior import class_name
 from smachac.targets.python.runner import hidden, loaded, quiet

@@ -13,7 +13,6 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -22,6 +21,7 @@ from smachac.diagnostics.diagnostic import Report
 from smachac.interpreter.behaviours import is_made_of_functions
 from smachac.ir.nodes import Leaf, Machine, Node, Outcome, StateMachine
 from smachac.ir.traversal import walk
+from smachac.records import replace
 from smachac.targets.scxml import document
 from smachac.targets.scxml.plan import Plan
 from smachac.verify.guidance import possible_leaf_outcomes
