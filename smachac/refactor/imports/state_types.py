@@ -11,6 +11,7 @@ from pathlib import Path
 
 from smachac.diagnostics.source import Span
 from smachac.frontend import schema
+from smachac.frontend.text.unquoted import is_name
 from smachac.ir.nodes import Expression, Key, Leaf
 from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type
@@ -167,7 +168,7 @@ class StateTypes:
 
     def _name(self, word: str) -> str:
         base = re.sub(r"\W+", "_", word).strip("_")
-        base = base if base.isidentifier() else f"State_{base}".rstrip("_")
+        base = base if is_name(base) else f"State_{base}".rstrip("_")
         name, number = base, 2
         while name.casefold() in self.taken:
             name, number = f"{base}_{number}", number + 1
@@ -228,7 +229,7 @@ def _split(
 def _variable(parameter: str) -> str:
     """The variable for a parameter, which has no name of a field."""
     name = re.sub(r"\W+", "_", parameter)
-    return f"{name}_argument" if name in RESERVED or not name.isidentifier() else name
+    return f"{name}_argument" if name in RESERVED or not is_name(name) else name
 
 
 def _interface(made: ImportedType) -> str:
