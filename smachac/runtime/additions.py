@@ -42,10 +42,10 @@ class SleepState(smach.State):
         return "succeeded"
 
 
-def state_of_yasmin(state: Any) -> Any:
+def state_of_yasmin(state: Any, outcomes: Any) -> Any:
     """Put a state of YASMIN into a machine of SMACH, which cannot run it: the module for YASMIN
-    does."""
-    made = smach.State(outcomes=sorted(state.get_outcomes()))
+    does. Of its outcomes, those of the script are declared."""
+    made = smach.State(outcomes=list(outcomes))
     made.yasmin = state
     return made
 

@@ -392,6 +392,20 @@ def test_declared_keys_are_those_of_the_container(arm: Callable[..., Path]) -> N
         assert (held["box"], held["INSIDE/part"], held["part"]) == (7, 700, 90)
 
 
+def test_outcomes_that_no_script_names_give_no_message(
+    arm: Callable[..., Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    interface = INTERFACE.replace("lost: {}", "").replace("{held: {}, }", "{held: {}}")
+    script = "name: pick\noutcomes: [done]\nuserdata: {part: 1, log: []}\nstates:\n"
+    files = files_of(
+        arm(f"{script}- A: {{template: Grasp, transitions: {{held: done}}}}\n", interface)
+    )
+    with loaded(files) as module:
+        assert module.run().execute() == "done"
+    out, err = capsys.readouterr()
+    assert "inconsistent" not in out + err
+
+
 def test_a_request_reaches_the_state_that_runs(arm: Callable[..., Path]) -> None:
     files = files_of(arm(SCRIPT))
     with loaded(files) as module:

@@ -419,7 +419,7 @@ def _leaf(
     wrapper = module.context.wrappers.get(leaf.type)
     if wrapper is not None:
         module.additions[wrapper] = None
-        made = call(wrapper, [("", made)])
+        made = call(wrapper, [("", made), ("", names(own_outcomes(leaf)))])
     add = added.statement(leaf, made, inside, module, callbacks=callbacks)
     return structure.documentation(added.outer.doc, inside.depth + 1) + add
 
