@@ -44,7 +44,8 @@ class Framework:
     the parameters of the constructors in their order, where an import needs them, `signatures` the
     parameters of methods by full name, of those that are the same in all versions. `containers` are
     the classes of containers; `adds` are the methods that add states, and a class that overrides
-    one of `overridden` changes how they are added or run.
+    one of `overridden` changes how they are added or run. `lacking` are modules that have none of
+    the names of another one, each with that one.
 
     `jumps`: an outcome without a transition leads to the state of this name, if there is one.
     `effects` are the codes of the rules whose errors are faults in this framework too, each with
@@ -64,6 +65,7 @@ class Framework:
     static: frozenset[str] = frozenset()
     overridden: frozenset[str]
     parameters: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    lacking: Mapping[str, str] = field(default_factory=dict)
     signatures: Mapping[str, Signature] = field(default_factory=dict)
     jumps: bool = False
     effects: Mapping[str, str] | None = None
