@@ -277,6 +277,7 @@ class Leaf(_State):
 
     The other fields are facts of the state type (docs/state_types.md, Facts). `built_in` is the
     name of the built-in state type; it is empty for a type of the user, also for one of that name.
+    `any_key`: it is a state of YASMIN; it is open, but its outcomes are known.
     `misplaced_keys` are the input keys that the script writes as variables of the state (SM003).
     `synthetic`: no such state is written; it stands for what is not known of its container.
     """
@@ -290,6 +291,7 @@ class Leaf(_State):
     class_facts: ClassFacts | None = field(default=None, compare=False, repr=False)
     built_in: str = field(default="", compare=False, repr=False)
     stand_in: bool = field(default=False, compare=False, repr=False)
+    any_key: bool = field(default=False, compare=False, repr=False)
     adds_frames: tuple[str, ...] | None = field(default=None, compare=False, repr=False)
     misplaced_keys: tuple[str, ...] = field(default=(), compare=False, repr=False)
 
@@ -510,6 +512,12 @@ class StateType:
         the class names."""
         known = self.class_facts is not None and self.class_facts.parameters is not None
         return "variables" in self.given or (self.open and not known)
+
+    @property
+    def any_key(self) -> bool:
+        """Whether the states can use any key of a blackboard, as a class of YASMIN can whose
+        interface has `input_keys: {"*": {}}`."""
+        return "yasmin" in self.code and "input_keys" in self.given
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -59,11 +59,13 @@ def test_the_files_of_the_import(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     text = PAGE.read_text("utf-8")
     monkeypatch.chdir(tmp_path)
     (tmp_path / ".git").mkdir()
-    (code, *_) = re.findall(r"^```python\n# parcels\.py\n(.*?)^```", text, re.M | re.S)
-    Path("parcels.py").write_text(f"# parcels.py\n{code}")
-    main(["import", "parcels.py", "-o", "project"])
+    for name, folder in (("parcels", "project"), ("picking", "picking")):
+        (code, *_) = re.findall(rf"^```python\n# {name}\.py\n(.*?)^```", text, re.M | re.S)
+        Path(f"{name}.py").write_text(f"# {name}.py\n{code}")
+        main(["import", f"{name}.py", "-o", folder])
     shown = re.findall(r"^```yaml\n# (\S+)\n(.*?)^```", text, re.M | re.S)
-    assert [name for name, _ in shown] == ["project/main.yml", "project/templates/Weigh.yml"]
+    names = ["project/main.yml", "project/templates/Weigh.yml", "picking/templates/Grasp.yml"]
+    assert [name for name, _ in shown] == names
     for name, content in shown:
         assert Path(name).read_text("utf-8").partition("\n")[2] == content
 

@@ -36,7 +36,7 @@ from smachac.ir.nodes import (
 from smachac.ir.traversal import outcome_names, outer_inputs, outer_outputs
 from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import Evaluator
-from smachac.pysource.machines.framework import Framework
+from smachac.pysource.machines.framework import Framework, userdata_of
 from smachac.pysource.machines.heap import Added, Children
 from smachac.pysource.machines.libraries import framework_of
 from smachac.pysource.machines.proven_reads import doubtful_in
@@ -133,6 +133,7 @@ class _Builder:
         self.states = 0
         self.nodes = 0
         self.path: list[Instance] = []
+        self.in_rules: list[Mapping[str, Sequence[str]]] = []
         self.names_above: list[str] = []
         self.objects: dict[tuple[str, ...], Instance] = {}
 
@@ -183,6 +184,7 @@ class _Builder:
         if inside:
             added = ()
         self.path.append(made)
+        self.in_rules.append(_outcomes_in_rules(made))
         self.names_above.append(name)
         self.objects[tuple(self.names_above)] = made
         node = self._built(made, name, span, depth, added, assumed, complete=complete)
@@ -191,6 +193,7 @@ class _Builder:
         if self.names(made.slots.get("$outputs"), span) is None:
             node = _with_outputs(node)
         self.names_above.pop()
+        self.in_rules.pop()
         self.path.pop()
         return node
 
@@ -454,12 +457,14 @@ class _Builder:
     def open_leaf(
         self, name: str, span: Span, added: Added, reason: str, facts: ClassFacts | None = None
     ) -> Leaf:
-        """A state of an unknown type: its outcomes are those of a comment, or of its
-        transitions."""
+        """A state of an unknown type: its outcomes are those of a comment, or of its transitions
+        and the rules of its concurrence."""
         note = self.reader.comments.at(span)
         if note.outcomes is None:
             self.unknown.append((span, reason))
-            outcomes = tuple(Outcome(name=text, span=span) for text in _outcomes_of(added))
+            in_rules = self.in_rules[-1].get(name, ()) if self.in_rules else ()
+            named = dict.fromkeys([*_outcomes_of(added), *in_rules])
+            outcomes = tuple(Outcome(name=text, span=span) for text in named)
         else:
             outcomes = tuple(Outcome(name=word.text, span=word.span) for word in note.outcomes)
         type_ = facts.name.text if facts is not None and facts.name is not None else ELSEWHERE
@@ -766,6 +771,17 @@ def _outcomes_of(added: Added) -> list[str]:
     return [str(key) for key in items] if isinstance(items, Mapping) else []
 
 
+def _outcomes_in_rules(made: Instance) -> dict[str, list[str]]:
+    """The outcomes that the rules of a concurrence name, by state."""
+    found: dict[str, list[str]] = {}
+    mapping = made.slots.get("$outcome_map")
+    items = mapping.items if isinstance(mapping, DictValue) else {}
+    for _, value in items.values() if isinstance(items, Mapping) else ():
+        for one in _conditions(value) or ():
+            found.setdefault(one.child, []).append(one.outcome)
+    return found
+
+
 def _one_for_each_name(added: Sequence[Added]) -> list[Added]:
     """The states of a container. Those of one name that unknown conditions add are one state: it
     is one of several, and leads to one of several targets."""
@@ -913,7 +929,7 @@ def _userdata(made: Instance) -> Mapping[Any, tuple[Value, Value]] | None:
     """The keys that the userdata of a container has: those of each, if an unknown condition selects
     how the container is made. None: not known."""
     found: dict[Any, tuple[Value, Value]] = {}
-    for part in alternatives(made.slots.get("userdata", UNKNOWN)):
+    for part in alternatives(userdata_of(made) or UNKNOWN):
         items = part.items if isinstance(part, DictValue) else None
         if not isinstance(items, Mapping):
             return None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from smachac.pysource.machines import python_library
+from smachac.pysource.machines import python_library, yasmin_runtime
 from smachac.pysource.machines.builtins import MAKERS
 from smachac.pysource.machines.flexbe_library import FLEXBE
 from smachac.pysource.machines.framework import Framework
@@ -87,6 +87,8 @@ def library_module(known: dict[str, ModuleValue], name: str) -> Value | None:
                  for name, names in framework.modules.items()}  # fmt: skip
         for module, names in (*every.items(), *python_library.MODULES.items()):
             known[module] = ModuleValue(module, {**names})
+    if name.rpartition(".")[2] == yasmin_runtime.NAME:  # it lies beside the programs
+        name = yasmin_runtime.NAME
     if name in known:
         return known[name]
     if name in python_library.UNREAD:

@@ -25,6 +25,7 @@ from smachac.pysource.machines.values import (
     Frame,
     Function,
     Instance,
+    LibraryClass,
     ModuleValue,
     OpenText,
     Value,
@@ -240,6 +241,8 @@ def _builds(node: ast.AST, module: ModuleValue) -> bool:
         if name in _WORDS:
             return True
         value = module.slots.get(name) if isinstance(part, ast.Name) else None
+        if isinstance(value, LibraryClass) and is_container_class(value):
+            return True
         if isinstance(value, Class) and any(map(is_container_class, value.order)):
             return True
     return False

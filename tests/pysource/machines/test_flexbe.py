@@ -644,7 +644,8 @@ def test_import_names_the_framework_and_writes_nothing(
     monkeypatch.chdir(tmp_path)
     assert main(["import", "machine.py", "-o", "project"]) == 1
     error = capsys.readouterr().err
-    assert "`TaskSM` was not imported: machines for FlexBE are not imported\n" in error
+    assert "`TaskSM` was not imported: it cannot become a script\n" in error
+    assert ": machines for FlexBE are not imported\n" in error
     assert not (tmp_path / "project").exists()
 
 
