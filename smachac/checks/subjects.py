@@ -59,13 +59,17 @@ def robots(context: Context) -> bool:
 
 def messages(context: Context) -> bool:
     """Messages of ROS: their types, keys that hold one, or code that can use one."""
-    leaves = [node for _, node in context.states if isinstance(node, Leaf)]
     return (
         bool(context.machine.definitions)
         or bool(context.code_slots)
         or classes(context)
-        or any(held.role in DEFINITION_KINDS for leaf in leaves for held in leaf.variables)
-        or any(key.role == "message" for leaf in leaves for key in leaf.inputs)
+        or any(_has_messages(node) for _, node in context.states if isinstance(node, Leaf))
+    )
+
+
+def _has_messages(leaf: Leaf) -> bool:
+    return any(held.role in DEFINITION_KINDS for held in leaf.variables) or any(
+        key.role == "message" for key in leaf.inputs
     )
 
 

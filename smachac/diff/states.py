@@ -80,9 +80,12 @@ def states_of(machine: Machine) -> States:
         path: State(written=state, path=path, parent=state.parent, children=list(state.children))
         for path, state in view.states.items()
     }
+    inside = {
+        path: frozenset(view.states[child].name for child in state.children)
+        for path, state in found.items()
+    }
     for state in found.values():
-        around = None if state.parent is None else found[state.parent].children
-        names = None if around is None else frozenset(view.states[path].name for path in around)
+        names = None if state.parent is None else inside[state.parent]
         state.facts = dict(_facts(state, names))
     found[machine.root.name].facts |= dict(_machine_facts(machine, found))
     return found

@@ -57,9 +57,11 @@ class Batch:
     again: Callable[[str], Analysis] | None = field(default=None, compare=False, repr=False)
 
     def whole(self, name: str) -> Analysis:
-        """The analysis of a script with its machine and its library."""
+        """The analysis of a script with its machine and its library. That of a Python file has
+        none: its text is no script."""
         analysis = self.analyses[name]
-        if analysis.library is not None or analysis.source is None or self.again is None:
+        is_whole = analysis.library is not None or Path(name).suffix == PYTHON_SUFFIX
+        if is_whole or analysis.source is None or self.again is None:
             return analysis
         return self.again(name)
 

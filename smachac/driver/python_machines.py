@@ -33,8 +33,14 @@ from smachac.pysource.machines.libraries import FRAMEWORKS
 from smachac.pysource.machines.project import Repository, module_text
 from smachac.pysource.machines.roots import Roots, machines_of, variants_of
 from smachac.pysource.machines.values import UseFault
-from smachac.pysource.python2 import INSTALL, is_installed, looks_like_python2
-from smachac.pysource.source import LONGEST, PythonText, is_readable, syntax_error
+from smachac.pysource.python2 import INSTALL, is_installed, looks_like_python2, python2_error
+from smachac.pysource.source import (
+    LONGEST,
+    PythonText,
+    is_readable,
+    is_too_deep,
+    syntax_error,
+)
 from smachac.records import dataclass, replace
 
 CANNOT_WORK = frozenset({
@@ -102,10 +108,6 @@ class PythonProject:
         library = disk_library(path, report, disk=self.disk, codes=CODES)
         if source is None:
             return PythonFile(path=path, source=None, report=report)
-        if self._tree(source) is None:
-            report.append(_unreadable(source))
-            found = grouped(apply_severities(in_order(report), library.policy))
-            return PythonFile(path=path, source=source, report=found)
         cache = self._cache(path) if self.cached else None
         key = f"{path} {everything} {library.policy}"
         known = cache.get(key, self._text) if cache is not None else None
@@ -113,6 +115,10 @@ class PythonProject:
             return PythonFile(
                 path=path, source=source, report=[*report, *known.report], coverage=known.coverage
             )
+        if self._tree(source) is None:
+            report.append(_unreadable(source))
+            found = grouped(apply_severities(in_order(report), library.policy))
+            return PythonFile(path=path, source=source, report=found)
         read_before = [*report]
         whole_rules = everything or MARK in source.text  # a comment can be about any finding
         repository, evaluator, reader = self._repository(path, whole_rules)
@@ -258,11 +264,9 @@ def python_files(folder: Path) -> Iterator[Path]:
         visited += 1 + len(names)
         if visited > MOST_ENTRIES or count >= MOST_FILES:
             return
-        for name in sorted(names):
+        for name in sorted(name for name in names if name.endswith(PYTHON_SUFFIX)):
             path = Path(top, name)
-            if name.endswith(PYTHON_SUFFIX) and not (
-                path.is_symlink() and not lies_inside(path, folder)
-            ):
+            if not path.is_symlink() or lies_inside(path, folder):
                 count += 1
                 yield path
 
@@ -291,10 +295,11 @@ def _unreadable(source: Source) -> Diagnostic:
     if looks_like_python2(source) and not is_installed():
         span = Span(source, 0, 0)
         return errors.unreadable_module(span, "this is code for Python 2", INSTALL)
-    word = syntax_error(source)
+    word = None if is_too_deep(source.text) else syntax_error(source)
     if word is None:
         span = Span(source, 0, 0)
-        message, help = "the code in this file is nested too deeply", "split the expressions"
+        message = "the code in this file is nested more deeply than smachac reads"
+        help = "assign parts of its longest expression to variables"
         if len(source.text) > LONGEST:
             message, help = f"this file has more than {LONGEST:,} characters", "split the file"
         elif not is_readable(source.text):
@@ -302,8 +307,15 @@ def _unreadable(source: Source) -> Diagnostic:
             help = "end its lines with a line feed"
         return errors.unreadable_module(span, message, help)
     message = f"this is not valid Python 3: {word.text.partition('. Maybe you meant')[0]}"
-    help = "correct the code at the mark"
-    return errors.unreadable_module(word.span, message, help)
+    help, place = "correct the code at the mark", word.span
+    of_python2 = python2_error(source) if looks_like_python2(source) else None
+    if of_python2 is not None:
+        message, place = "this is valid neither in Python 2 nor in Python 3", of_python2
+        if place.start == len(source.text):
+            help = "close the bracket or text that is open at the end of the file"
+    if place.source.line(place.line).startswith("<<<<<<<"):
+        help = "keep one version, and remove the lines with `<<<<<<<`, `=======` and `>>>>>>>`"
+    return errors.unreadable_module(place, message, help)
 
 
 def _stops(graphs: Sequence[Graph]) -> frozenset[str]:
@@ -371,7 +383,7 @@ def _true_of_all(findings: Report, machines: Sequence[Machine]) -> Iterator[Diag
 def _of_uses(faults: Sequence[UseFault]) -> Iterator[Diagnostic]:
     """The findings about wrong uses of a framework; the names that a module lacks are one for each
     file that uses them."""
-    members: dict[tuple[Source, str], list[Word]] = {}
+    members: dict[tuple[Source, str, str], list[Word]] = {}
     for fault in dict.fromkeys(faults):
         name = fault.names[0] if fault.names else ""
         match fault.kind:
@@ -380,7 +392,8 @@ def _of_uses(faults: Sequence[UseFault]) -> Iterator[Diagnostic]:
             case "shared transitions":
                 yield errors.shared_transitions(fault.span, name, fault.other)
             case "missing member":
-                which = fault.span.source, fault.names[1]
+                _, module, home = fault.names
+                which = fault.span.source, module, home
                 members.setdefault(which, []).append(Word(name, fault.span))
             case "repeated key":
                 yield errors.repeated_key(Word(name, fault.span), fault.other)
@@ -390,8 +403,8 @@ def _of_uses(faults: Sequence[UseFault]) -> Iterator[Diagnostic]:
                 yield errors.no_start_state(Word(name, fault.span))
             case _:
                 yield errors.wrong_call(fault.span, fault.kind, fault.names)
-    for (_, module), words in members.items():
-        yield errors.missing_member(module, words)
+    for (_, module, home), words in members.items():
+        yield errors.missing_member(module, words, home)
 
 
 def graphs_by_name(file: PythonFile) -> Mapping[str, Graph]:

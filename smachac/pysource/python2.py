@@ -1,5 +1,5 @@
 """Code for Python 2, as that of ROS before Noetic is: read with the fixers of `fissix` that keep
-lines. Places are those of lines, because columns can change.
+lines. In lines that they change, the place of a node is searched.
 
 `fissix` (PyPI, the extra `python2`) is lib2to3, which Python 3.13 no longer has.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Sequence
 from importlib.util import find_spec
 
 from smachac.diagnostics.source import Source, Span
@@ -34,17 +35,40 @@ class NotInstalledError(Exception):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LinesOfText(PythonText):
-    """A text whose tree is that of another one with the same lines: places are whole lines."""
+class ConvertedText(PythonText):
+    """A text whose tree is that of another one with the same lines, which are `lines`. Places in a
+    line that was changed are those of the same code in it, or else the whole line."""
+
+    lines: Sequence[str]
 
     def span(self, node: ast.stmt | ast.expr) -> Span:
-        line = self.source.line(node.lineno)
-        start = self.source.line_starts[node.lineno - 1] + len(line) - len(line.lstrip())
-        return Span(self.source, start, start + max(len(line.strip()), 1))
+        first, last = node.lineno, node.end_lineno or node.lineno
+        if self._shift(first) is not None and self._shift(last) is not None:
+            # (not `super()`, which a class with slots does not have)
+            return PythonText.span(self, node)
+        line = self.source.line(first)
+        start, code = len(line) - len(line.lstrip()), line.strip()
+        if first == last:
+            whole = self.lines[first - 1].encode("utf-8", "surrogatepass")
+            column, end = node.col_offset, node.end_col_offset or node.col_offset
+            same = whole[column:end].decode("utf-8", "replace")
+            places = [found.start() for found in re.finditer(re.escape(same), line)]
+            if same and places:
+                start = min(places, key=lambda place: abs(place - column))
+                code = same
+        start += self.source.line_starts[first - 1]
+        return Span(self.source, start, start + max(len(code), 1))
 
     def offset(self, line: int, column: int) -> int:
-        length = len(self.source.line(line))
-        return self.source.line_starts[line - 1] + min(column, length)
+        return PythonText.offset(self, line, max(column - (self._shift(line) or 0), 0))
+
+    def _shift(self, number: int) -> int | None:
+        """By how many columns a line of the tree is indented more than that of the text; None for a
+        line that was changed."""
+        line, own = self.lines[number - 1], self.source.line(number)
+        if line.strip() != own.strip():
+            return None
+        return (len(line) - len(line.lstrip())) - (len(own) - len(own.lstrip()))
 
 
 def is_installed() -> bool:
@@ -62,22 +86,49 @@ def python2_text(source: Source) -> PythonText | None:
     NotInstalledError."""
     if not is_readable(source.text) or _FOR_PYTHON_3.match(source.text):
         return None
-    text = _TABS.sub(lambda found: found.group().expandtabs(8), source.text)
+    text = converted = _TABS.sub(lambda found: found.group().expandtabs(8), source.text)
     try:
         tree = parse_module(text)
         if text == source.text:  # Python 3 refuses it, but not because of its tabs
             return None
     except SyntaxError:
-        converted = _converted(text)
-        if converted is None or converted.count("\n") != text.count("\n"):
+        changed = _converted(text)
+        if changed is None or changed.count("\n") != text.count("\n"):
             return None
+        converted = changed
         try:
             tree = parse_module(converted)
         except (SyntaxError, RecursionError, MemoryError):
             return None
     except (RecursionError, MemoryError):
         return None
-    return LinesOfText(source=source, tree=tree)
+    return ConvertedText(source=source, tree=tree, lines=converted.split("\n"))
+
+
+def python2_error(source: Source) -> Span | None:
+    """The place of the first syntax error of a text for Python 2; None if there is none, or if
+    `fissix` is not installed."""
+    try:
+        from fissix.pgen2.parse import ParseError
+        from fissix.pgen2.tokenize import TokenError
+        from fissix.refactor import RefactoringTool
+    except ImportError:
+        return None
+    try:
+        RefactoringTool([]).refactor_string(f"{source.text}\n", "<text>")
+    except ParseError as error:
+        _, (line, column) = error.context
+    except TokenError as error:
+        _, (line, column) = error.args
+    except IndentationError as error:
+        line, column = error.lineno or 1, 0
+    except (RecursionError, ValueError):
+        return None
+    else:
+        return None
+    line = min(line, len(source.line_starts))
+    start = source.line_starts[line - 1] + min(column, len(source.line(line)))
+    return Span(source, start, min(start + 1, len(source.text)))
 
 
 def _converted(text: str) -> str | None:

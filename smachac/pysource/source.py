@@ -11,7 +11,7 @@ import re
 import warnings
 
 from smachac.diagnostics.source import Source, Span, Word
-from smachac.ir.python_code import parse_module
+from smachac.ir.python_code import TooDeepError, parse_module
 from smachac.pysource.jinja_tags import meta_block, replaced, tags
 from smachac.records import dataclass
 
@@ -113,6 +113,19 @@ def _with_statements(text: str, template: str, filled: tuple[tuple[int, int], ..
             parts += [text[done:start], "_;"]
             done = start + 2
     return "".join([*parts, text[done:]])
+
+
+def is_too_deep(text: str) -> bool:
+    """Whether code can be valid Python, but is nested too deeply to be read."""
+    if not is_readable(text):
+        return False
+    try:
+        parse_module(text)
+    except TooDeepError:
+        return True
+    except SyntaxError:
+        return False
+    return False
 
 
 def syntax_error(source: Source) -> Word | None:

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from smachac.analysis.expression_types import limited, type_of, type_of_call, type_of_data
+from smachac.analysis.data_types import type_of_data
+from smachac.analysis.expression_types import limited, type_of, type_of_call
 from smachac.analysis.type_inference import infer
 from smachac.analysis.type_lattice import fits, misfit, widened
 from smachac.checks import check_machine

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import ast
+import random
 from pathlib import Path
 
 import pytest
 
 import smachac
 from smachac.commands.cli import main
+from smachac.ir import python_code
 from smachac.ir.python_code import DEEPEST, TooDeepError, parse_code, parse_module
 from tests.support.examples import every
 
@@ -126,3 +128,47 @@ def test_nothing_else_parses_code() -> None:
         if "ast.parse(" in path.read_text("utf-8")
     }
     assert found == {"ir/python_code.py", "robots/xacro_expressions.py"}
+
+
+def test_the_fast_bound_of_operations_finds_all_that_the_exact_one_finds() -> None:
+    pieces = [
+        "a",
+        ".",
+        *"()[]{}",
+        ",",
+        ";",
+        "\n",
+        "#",
+        "'",
+        '"',
+        '"""',
+        "\\",
+        "f'",
+        "rb'",
+        " ",
+        "12",
+    ]
+    chosen = random.Random(42)
+    texts = ("".join(chosen.choices(pieces, k=8_000)) for _ in range(20))
+    wrong = [
+        text
+        for text in (*texts, "f'{" + "a.b" * 1_500 + "}'", "a.b" * 1_500)
+        if python_code._has_too_many_operations(text)
+        and not python_code._may_have_too_many_operations(text)
+    ]
+    assert wrong == []
+
+
+@pytest.mark.parametrize("lines", ["{}", "(\n{}\n)", "if x:\n    y = [\n{}\n]"])
+@pytest.mark.parametrize("form", ["-{}", "[{}]", "f(a={})", "lambda: {}", "x.y({}).z"])
+def test_levels_are_counted_in_one_line_and_in_several(form: str, lines: str) -> None:
+    code = "x"
+    for _ in range(60):
+        code = form.format(code)
+    tree = ast.parse(lines.format(code))
+    level: list[ast.AST] = [tree]
+    levels = 0
+    while level:
+        levels += 1
+        level = [part for node in level for part in ast.iter_child_nodes(node)]
+    assert [python_code._is_deeper(tree, most) for most in (levels - 1, levels)] == [True, False]

@@ -155,6 +155,22 @@ HOSTILE: Mapping[str, str] = {
         + "y = "
         + " + ".join(f"str(x{n})" for n in range(8))
     ),
+    "a chain of 3000 classes": _with(
+        "class C0(smach.State):\n    pass\n"
+        + "".join(f"class C{n}(C{n - 1}):\n    pass\n" for n in range(1, 3_000))
+        + "C2999().missing"
+    ),
+    "a class with 500 bases": _with(
+        "".join(f"class B{n}(smach.State):\n    pass\n" for n in range(500))
+        + f"class D({', '.join(f'B{n}' for n in range(500))}):\n    pass\nD()"
+    ),
+    "names with many open parts": _HEAD + "def tour(x):\n"
+    "    sm = smach.StateMachine(outcomes=['ok'])\n"
+    "    y = '{' + x + '}'\n"
+    "    for n in range(12):\n        y = '%s%s' % (y, y)\n"
+    "    with sm:\n        for n in range(1000):\n"
+    "            sm.add(f'A{n}{y}', smach.State(outcomes=['ok']), {'ok': f'A{y}{y}'})\n"
+    "            sm.add(f'{x}{n}', smach.State(outcomes=['ok']), {'ok': f'Q{n}'})\n",
     "empty": "",
     "only a comment": "# smach StateMachine",
 }

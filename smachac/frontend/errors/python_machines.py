@@ -109,10 +109,11 @@ def shared_transitions(span: Span, outcome: str, first: Span | None) -> Finding:
     unsuppressible=False,
     effect="Python raises NameError, AttributeError or ImportError: the program stops",
 )
-def missing_member(module: str, words: Sequence[Word]) -> Finding:
+def missing_member(module: str, words: Sequence[Word], home: str = "") -> Finding:
     """A module of the repository, or the file itself, has no such name.
 
-    The module was read as a whole, and nothing in it can bind another name.
+    The module was read as a whole, and nothing in it can bind another name. Names of `smach` that
+    are used from `smach_ros`, or the reverse, are such names too.
 
     Wrong:
         import smach
@@ -154,13 +155,16 @@ def missing_member(module: str, words: Sequence[Word]) -> Finding:
     more = sorted({word.text for word in others} - {first.text})
     names = listed([first.text, *more])
     own = module == first.span.source.name
+    help = "correct the name, or define it in the module"
+    if home:
+        help = f"import it from `{home}`"
+    elif own:
+        help = "correct the name, or import it"
     return Finding(
         span=first.span,
         message=f"this file has no {names}" if own else f"`{module}` has no {names}",
         arguments=(module, first.text),
-        help="correct the name, or import it"
-        if own
-        else "correct the name, or define it in the module",
+        help=help,
         related=tuple(
             Related(span=word.span, message="the same here") for word in others[:MOST_RELATED]
         ),

@@ -30,11 +30,13 @@ from smachac.pysource.machines.values import (
     Method,
     Native,
     OneOf,
+    OpenText,
     TupleValue,
     Unknown,
     Value,
     alternatives,
     one_of,
+    open_text,
     sequence,
     truth,
 )
@@ -123,6 +125,8 @@ def _len(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Val
 def _text(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
     if not arguments.positional:
         return Const("", span)
+    if isinstance(arguments.positional[0], OpenText):
+        return arguments.positional[0]
     return one_of(
         Const(str(value.value), value.span or span) if isinstance(value, Const) else UNKNOWN
         for value in alternatives(arguments.positional[0])
@@ -339,6 +343,8 @@ def attribute_of_value(evaluator: Interpreter, owner: Value, name: str) -> Value
     match owner:
         case Const(value=str()) if name in _TEXT_METHODS:
             return Method(Native(f"str.{name}", _text_method(name)), owner)
+        case OpenText(text=text) if name in _CHANGES and text.startswith("{") and text[-1] == "}":
+            return Native(name, lambda e, a, s: _changed_text(text, name, a))
         case ListValue() if name in _LIST_METHODS:
             return Method(Native(f"list.{name}", _LIST_METHODS[name]), owner)
         case DictValue():
@@ -351,15 +357,19 @@ def attribute_of_value(evaluator: Interpreter, owner: Value, name: str) -> Value
     return UNKNOWN
 
 
-def _plain(value: Value) -> Any:
-    """The data of a known value. Raises ValueError."""
+def _plain(value: Value, opened: list[OpenText]) -> Any:
+    """The data of a known value, and of a text with an open part, which `opened` then has. Raises
+    ValueError."""
     match value:
         case Const(value=known):
             return known
+        case OpenText(text=text):
+            opened.append(value)
+            return text
         case TupleValue() | ListValue():
             items = sequence(value)
             if items is not None:
-                return [_plain(item) for item in items]
+                return [_plain(item, opened) for item in items]
     raise ValueError
 
 
@@ -371,14 +381,25 @@ def _as_value(data: Any, span: Span | None) -> Value:
     return Const(data, span)
 
 
+_CHANGES = frozenset(["upper", "lower", "title", "capitalize", "strip", "swapcase", "casefold"])
+"""The methods of a text that make another one."""
+
+
+def _changed_text(text: str, name: str, arguments: Arguments) -> Value:
+    """What a method makes of a parameter."""
+    plain = arguments == Arguments() and "{" not in text[1:]
+    return open_text(f"{text[:-1]}.{name}()}}") if plain else UNKNOWN
+
+
 def _text_method(name: str) -> Callable[[Interpreter, Arguments, Span | None], Value]:
     def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
         me = arguments.positional[0]
         if not isinstance(me, Const) or not isinstance(me.value, str) or arguments.open:
             return UNKNOWN
         try:
-            given = [_plain(value) for value in arguments.positional[1:]]
-            named = {key: _plain(value) for key, value in arguments.named}
+            opened: list[OpenText] = []
+            given = [_plain(value, opened) for value in arguments.positional[1:]]
+            named = {key: _plain(value, opened) for key, value in arguments.named}
             long = _is_long([me.value, *given, *named.values()])
             if long or (name == "format" and has_width(me.value)):
                 return UNKNOWN
@@ -387,6 +408,8 @@ def _text_method(name: str) -> Callable[[Interpreter, Arguments, Span | None], V
             return UNKNOWN
         if isinstance(found, str) and len(found) > LONGEST_TEXT:
             return UNKNOWN
+        if opened:
+            return open_text(found) if name in ("format", "join") else UNKNOWN
         return _as_value(found, span or me.span)
 
     return run
@@ -559,6 +582,8 @@ _DICT_METHODS: Mapping[str, Callable[[Interpreter, Arguments, Span | None], Valu
     "keys": _parts(0),
     "values": _parts(1),
     "items": _parts(None),
+    "iterkeys": _parts(0),
+    "itervalues": _parts(1),
     "iteritems": _parts(None),
     "copy": _copy,
     "clear": lambda e, a, s: _clear(e, a),

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import contextlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import PurePath
 from typing import Any, Literal, Protocol
 
 from smachac.diagnostics.source import Span
@@ -42,6 +43,7 @@ from smachac.pysource.machines.values import (
     ModuleValue,
     Native,
     OneOf,
+    OpenText,
     OwnSlots,
     Partial,
     Slots,
@@ -54,6 +56,7 @@ from smachac.pysource.machines.values import (
     newest,
     one_of,
     sequence,
+    text_of,
     truth,
 )
 from smachac.pysource.machines.wrong_calls import Signature, signature_of, wrong_call
@@ -65,6 +68,8 @@ MOST_STEPS, MOST_TIMES = 150_000, 2
 its functions and classes, and how many times as many for all of them."""
 DEEPEST_CALL, MOST_RECURSIVE = 60, 2
 """The most calls inside one another, and of one function under an unknown condition."""
+MOST_BASES = 200
+"""The most classes from which a class is derived that are known."""
 MOST_TURNS, MOST_WIDENINGS = 1_000, 8
 """The most turns of a `while` loop, and the most times that a loop with an unknown number of turns
 is evaluated until a turn changes nothing more."""
@@ -88,6 +93,8 @@ class Project(Protocol):
     def is_of_framework(self, cls: Value) -> bool: ...
     def signature_of(self, method: Native) -> Signature | None: ...
     def may_set(self, name: str) -> bool: ...
+    def misplaced(self, module: ModuleValue, name: str) -> tuple[Value, str]: ...
+    def is_certain(self, name: str, user: ModuleValue) -> bool: ...
 
 
 @dataclass(slots=True)
@@ -624,7 +631,7 @@ class Evaluator:
                 return UNKNOWN
         known = name in KNOWN_NAMES or any(word in text.source.text for word in _BINDING)
         if not (known or self.tries):
-            self.faults.append(UseFault("missing member", span, (name, module.file)))
+            self.faults.append(UseFault("missing member", span, (name, module.file, "")))
         return UNKNOWN
 
     def assign(self, target: ast.expr, value: Value, frame: Frame) -> None:
@@ -770,17 +777,25 @@ class Evaluator:
                 if not isinstance(found, ModuleValue) or found.dynamic:
                     frame.module.dynamic = True
                 continue
-            value = UNKNOWN
-            if isinstance(found, ModuleValue) and alias.name in found.slots:
-                value = found.slots[alias.name]
-            elif isinstance(found, ModuleValue | Unknown):
-                inner = self.project.load(self, f"{name}.{alias.name}".strip("."), frame.module)
-                value = inner if not isinstance(inner, Unknown) or not inner.reason else found
-                if isinstance(value, ModuleValue) and value is found:
-                    value = UNKNOWN
-                if isinstance(found, Unknown):
-                    value = found if isinstance(inner, Unknown) else inner
-            self.bind(alias.asname or alias.name, value, frame)
+            self.bind(alias.asname or alias.name, self._imported(found, name, alias, frame), frame)
+
+    def _imported(self, found: Value, module: str, alias: ast.alias, frame: Frame) -> Value:
+        """A name that a module has, or a module in it."""
+        name = alias.name
+        if isinstance(found, ModuleValue) and name in found.slots:
+            return found.slots[name]  # type: ignore[no-any-return]
+        whole = f"{module}.{name}".strip(".")
+        inner = self.project.load(self, whole, frame.module)
+        if inner is not found and not (isinstance(inner, Unknown) and inner.reason == whole):
+            return inner
+        if not isinstance(found, ModuleValue):
+            return found if isinstance(found, Unknown) else UNKNOWN
+        span = self.span(alias, frame)
+        place = Span(span.source, span.start, span.start + len(name)) if span else None
+        sure = not self.unsure and (
+            found.text is None or self.project.is_certain(module, frame.module)
+        )
+        return self._missing(found, name, place, sure=sure)
 
     def _full_name(self, node: ast.ImportFrom, module: ModuleValue) -> str:
         """The module of an import, which can be relative to that of the import."""
@@ -858,11 +873,13 @@ class Evaluator:
         kinds = Class | LibraryClass | Unknown
         known = [base if isinstance(base, kinds) else UNKNOWN for base in bases]
         rows = [[base, *self.classes(base)[1:]] for base in known] + [[*known]]
+        if sum(map(len, rows)) > MOST_BASES:
+            return (*rows[0][:MOST_BASES], UNKNOWN)
         found: list[Value] = []
         while rows := [row for row in rows if row]:
             tails = [base for row in rows for base in row[1:]]
             head = next((row[0] for row in rows if row[0] not in tails), None)
-            if head is None or len(found) > MOST_ITEMS:
+            if head is None:
                 return (*found, UNKNOWN)
             found.append(head)
             rows = [row[1:] if row[0] == head else row for row in rows]
@@ -1100,6 +1117,9 @@ class Evaluator:
             return self._spent(filled_in(left.value, right, span))
         if isinstance(left, Const) and isinstance(right, Const):
             return self._spent(calculated(left, op, right, span))
+        texts = text_of(left), text_of(right)
+        if isinstance(op, ast.Add) and None not in texts and Const in (type(left), type(right)):
+            return formatted((left, right), span)
         own, other = sequence(left), sequence(right)
         lists = isinstance(left, ListValue | TupleValue) and isinstance(
             right, ListValue | TupleValue
@@ -1257,16 +1277,19 @@ class Evaluator:
             case OneOf(values=values):
                 objects = (part for part in values if part != NONE)
                 return one_of(self.attribute(part, name, node, frame) for part in objects)
+            case OpenText():
+                return attribute_of_value(self, owner, name)
             case Unknown():
                 return owner
             case ModuleValue():
                 if name in owner.slots:
                     return owner.slots[name]  # type: ignore[no-any-return]
                 found = self.project.load(self, f"{owner.name}.{name}", owner)
-                if isinstance(found, ModuleValue):
+                if isinstance(found, ModuleValue) and found is not owner:
                     return found
-                self._missing(owner, name, node, frame)
-                return UNKNOWN
+                span = self.span(node, frame)
+                place = Span(span.source, span.end - len(name), span.end) if span else None
+                return self._missing(owner, name, place)
             case Instance():
                 return self._of_instance(owner, name, node, frame)
             case Class() | LibraryClass():
@@ -1280,20 +1303,32 @@ class Evaluator:
                 return self._search(order[at + 1 :], name, me)
         return attribute_of_value(self, owner, name)
 
-    def _missing(self, owner: ModuleValue, name: str, node: ast.expr, frame: Frame) -> None:
-        """Notes that a module of the project has no such name."""
-        span = self.span(node, frame)
-        sure = owner.text is not None and owner.is_loaded and not owner.dynamic
-        if span is None or not sure or self.tries or name.startswith("__"):
-            return
+    def _missing(
+        self, owner: ModuleValue, name: str, place: Span | None, *, sure: bool = True
+    ) -> Value:
+        """The value of a name that a module lacks: for a module of a framework, that of the module
+        that has it. It is a fault if no code can bind the name; `sure`: it is always read."""
+        meant, home = self.project.misplaced(owner, name)
+        if place is None or not sure or self.tries or name.startswith("__"):
+            return meant
+        if home or self._lacks(owner, name):
+            names = (name, owner.file or owner.name, home)
+            self.faults.append(UseFault("missing member", place, names))
+        return meant
+
+    def _lacks(self, owner: ModuleValue, name: str) -> bool:
+        """Whether no code can bind a name of a module of the project."""
+        if owner.text is None or not owner.is_loaded or owner.dynamic:
+            return False
+        path = PurePath(owner.file)
+        generated = _GENERATED.intersection((path.stem, path.parent.name))
+        if generated or name in bound_names(owner.text.tree):
+            return False
         inner = self.project.load(self, f"{owner.package}.{name}".strip("."), owner)
         if owner.file.endswith("__init__.py") and not isinstance(inner, Unknown):
-            return  # any import of a module binds its name in its package
-        text = owner.text.source.text if owner.text is not None else ""
-        binds = any(word in text for word in _BINDING)
-        if "__getattr__" not in owner.slots and not binds and not self.project.may_set(name):
-            place = Span(span.source, span.end - len(name), span.end)
-            self.faults.append(UseFault("missing member", place, (name, owner.file)))
+            return False  # any import of a module binds its name in its package
+        binds = any(word in owner.text.source.text for word in _BINDING)
+        return not (binds or "__getattr__" in owner.slots or self.project.may_set(name))
 
     def _of_instance(self, owner: Instance, name: str, node: ast.expr, frame: Frame) -> Value:
         if name in owner.slots:
@@ -1586,6 +1621,9 @@ class Evaluator:
         if isinstance(after, Method):
             self.call(after, Arguments(), None, frame)
 
+
+_GENERATED = frozenset(["msg", "srv", "action", "cfg"])
+"""Packages to which the build of a ROS package adds modules."""
 
 _BINDING = ("globals", "exec(", "setattr", "sys.modules", "vars(", "locals(", "__dict__")
 """The words in a module that can bind names which its assignments do not show."""

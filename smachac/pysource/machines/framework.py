@@ -44,8 +44,9 @@ class Framework:
     the parameters of the constructors in their order, where an import needs them, `signatures` the
     parameters of methods by full name, of those that are the same in all versions. `containers` are
     the classes of containers; `adds` are the methods that add states, and a class that overrides
-    one of `overridden` changes how they are added or run. `entries` are the methods of its classes
-    that return a machine which the framework runs. `life_cycle` are the methods of a state that it
+    one of `overridden` changes how they are added or run. `lacking` are modules that have none of
+    the names of another one, each with that one. `entries` are the methods of its classes that
+    return a machine which the framework runs. `life_cycle` are the methods of a state that it
     calls.
 
     `same_name_exits`: an outcome without a transition ends the container if that has an outcome of
@@ -68,6 +69,7 @@ class Framework:
     static: frozenset[str] = frozenset()
     overridden: frozenset[str]
     parameters: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    lacking: Mapping[str, str] = field(default_factory=dict)
     signatures: Mapping[str, Signature] = field(default_factory=dict)
     entries: frozenset[str] = frozenset()
     life_cycle: LifeCycle = LifeCycle()

@@ -10,7 +10,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import PurePath
-from typing import Any, Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple, Protocol, TypeVar
 
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir import nodes, types
@@ -33,7 +33,7 @@ from smachac.ir.nodes import (
     StateType,
     Transition,
 )
-from smachac.ir.traversal import outcome_names, outer_inputs
+from smachac.ir.traversal import outcome_names, outer_inputs, outer_outputs
 from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import Evaluator
 from smachac.pysource.machines.framework import Framework
@@ -54,15 +54,19 @@ from smachac.pysource.machines.values import (
     LibraryClass,
     Method,
     OneOf,
+    OpenText,
     TupleValue,
     Unknown,
     Value,
     alternatives,
     one_of,
     sequence,
+    text_of,
     truth,
 )
 from smachac.records import replace
+
+AnyContainer = TypeVar("AnyContainer", bound=Container)
 
 ELSEWHERE = "?"
 """The name of the state in place of all that is not known of a container."""
@@ -113,9 +117,7 @@ def graphs(roots: Roots, evaluator: Evaluator, reader: FactReader) -> Iterator[G
 
 
 def _text(value: Value | None) -> str | None:
-    if isinstance(value, Const) and isinstance(value.value, str):
-        return value.value
-    return None
+    return text_of(value) if value is not None else None
 
 
 class _Builder:
@@ -172,10 +174,7 @@ class _Builder:
         children = made.slots.get("$children")
         added = children.added if isinstance(children, Children) else ()
         complete = isinstance(children, Children) and children.complete and self.roots.complete
-        userdata = made.slots.get("userdata")
-        known = isinstance(userdata, DictValue) and isinstance(userdata.items, Mapping)
-        known = known and all(self.names(made.slots.get(slot), span) is not None
-                              for slot in ("$inputs", "$outputs"))  # fmt: skip
+        known = _userdata(made) is not None
         self.nodes += len(added)
         inside = made in self.path or depth > MOST_LEVELS or self.nodes > MOST_NODES
         if not complete or not known or inside or self._overrides(made):
@@ -187,6 +186,10 @@ class _Builder:
         self.names_above.append(name)
         self.objects[tuple(self.names_above)] = made
         node = self._built(made, name, span, depth, added, assumed, complete=complete)
+        if self.names(made.slots.get("$inputs"), span) is None:
+            node = _with_inputs(node, outside=False)
+        if self.names(made.slots.get("$outputs"), span) is None:
+            node = _with_outputs(node)
         self.names_above.pop()
         self.path.pop()
         return node
@@ -210,7 +213,7 @@ class _Builder:
             "outcomes": tuple(Outcome(name=text, span=place) for text, place in (*known, *ends)),
             "inputs": self.keys(made.slots.get("$inputs"), span, required=True),
             "outputs": self.keys(made.slots.get("$outputs"), span, required=True),
-            "userdata": tuple(_presets(made.slots.get("userdata"), span)),
+            "userdata": tuple(_presets(_userdata(made), span)),
             "span": span,
         }
         initial = builder.initial(added)
@@ -539,16 +542,21 @@ class _Children:
         self.framework = builder.framework(made)
         self.incomplete = not complete
         self.labels: set[str] = set()
+        self.open_starts: frozenset[str] = frozenset()
         self.outside: dict[str, Span] = {}
         self.choices: list[Leaf] = []
 
     def build(self, added: Sequence[Added], depth: int) -> tuple[Node, ...]:
         known = [one for one in added if _text(one.label) is not None]
         self.labels = {text for one in known if (text := _text(one.label)) is not None}
+        labels = (one.label for one in known)
+        self.open_starts = frozenset(one.start for one in labels if isinstance(one, OpenText))
         known = _one_for_each_name(known)
         for one in (*(one for one in added if _text(one.label) is None), *known):
             if _text(one.label) is None:
                 self.builder.unknown.append((one.span, "its name is not known"))
+            elif isinstance(one.label, OpenText):
+                self.builder.unknown.append((one.span, "a part of its name is not known"))
             elif one.possible:
                 self.builder.unknown.append((one.span, "a condition that is not known adds it"))
         if any(_text(one.label) is None for one in added) or (added and added[0].possible):
@@ -652,7 +660,7 @@ class _Children:
         """The target of a transition: its name, that of a state for several, or ELSEWHERE."""
         parts = alternatives(value)
         names = [_text(part) for part in parts]
-        if None in names:
+        if None in names or not all(self._is_sure(part) for part in parts):
             self.incomplete = True
             self.builder.unknown.append((added.span, f"the target of `{outcome}` is not known"))
             return ELSEWHERE
@@ -675,6 +683,18 @@ class _Children:
             )
         )  # fmt: skip
         return label
+
+    def _is_sure(self, target: Value) -> bool:
+        """Whether a target can be no other state or outcome than that of its name: of a text with
+        an open part, and of states with such names, another one can be meant."""
+        if _text(target) in self.labels:
+            return True
+        if isinstance(target, OpenText):
+            return False
+        name = _text(target) or ""
+        known = name in {outcome for outcome, _ in self.outcomes or ()}
+        starts = (name[:end] for end in range(len(name) + 1))
+        return not name or known or self.open_starts.isdisjoint(starts)
 
     def _remaps(self, node: Node, added: Added) -> Iterator[Remap]:
         given = added.remapping
@@ -889,9 +909,21 @@ def _pairs(value: Value) -> list[tuple[Value, Value]] | None:
     return [(pair[0], pair[1]) for pair in pairs if pair is not None]
 
 
-def _presets(value: Value | None, span: Span) -> Iterator[Preset]:
-    items = value.items if isinstance(value, DictValue) else None
-    for key, part in (items or {}).values() if isinstance(items, Mapping) else ():
+def _userdata(made: Instance) -> Mapping[Any, tuple[Value, Value]] | None:
+    """The keys that the userdata of a container has: those of each, if an unknown condition selects
+    how the container is made. None: not known."""
+    found: dict[Any, tuple[Value, Value]] = {}
+    for part in alternatives(made.slots.get("userdata", UNKNOWN)):
+        items = part.items if isinstance(part, DictValue) else None
+        if not isinstance(items, Mapping):
+            return None
+        for key, (name, value) in items.items():
+            found[key] = name, one_of([found[key][1], value]) if key in found else value
+    return found
+
+
+def _presets(userdata: Mapping[Any, tuple[Value, Value]] | None, span: Span) -> Iterator[Preset]:
+    for key, part in (userdata or {}).values():
         name = _text(key)
         if name is not None:
             place = _place(part, span)
@@ -919,13 +951,21 @@ def _wrapped(node: Container, span: Span) -> StateMachine:
     )  # fmt: skip
 
 
-def _with_inputs(node: StateMachine) -> StateMachine:
-    """A state machine that gets the userdata which its states read from outside."""
-    known = {key.name for key in node.inputs} | {preset.key for preset in node.userdata}
-    names: dict[str, Span] = {}
+def _with_inputs(node: AnyContainer, *, outside: bool = True) -> AnyContainer:
+    """A container that gets the userdata which its states read; `outside`: other code sets it."""
+    before = {key.name for key in node.inputs} | {preset.key for preset in node.userdata}
+    found: dict[str, Key] = {}
     for child in node.children:
-        for key in outer_inputs(child):
-            if key not in known:
-                names.setdefault(key, child.span)
-    more = tuple(Key(name=name, span=place) for name, place in names.items())
-    return replace(node, inputs=(*node.inputs, *more))
+        for key, name in zip(child.inputs, outer_inputs(child), strict=True):
+            if name not in before:
+                kind = types.ANY if outside else key.type
+                found.setdefault(name, Key(name=name, span=child.span, type=kind))
+    return replace(node, inputs=(*node.inputs, *found.values()))
+
+
+def _with_outputs(node: AnyContainer) -> AnyContainer:
+    """A container that gives what its states write to the container around it."""
+    before = {key.name for key in node.outputs}
+    found = {name: child.span for child in node.children for name in outer_outputs(child)}
+    more = (Key(name=name, span=place) for name, place in found.items() if name not in before)
+    return replace(node, outputs=(*node.outputs, *more))

@@ -97,6 +97,16 @@ def library_module(known: dict[str, ModuleValue], name: str) -> Value | None:
     return known.get(f".{name.rpartition('.')[2]}") if dot else None
 
 
+def misplaced(module: str, name: str) -> tuple[Value, str]:
+    """The value of a name that a module of a framework lacks, and the other module that has it; an
+    empty name: there is none."""
+    for framework in FRAMEWORKS:
+        other = framework.lacking.get(module, "")
+        if name in framework.modules.get(other, {}):
+            return framework.modules[other][name], other
+    return UNKNOWN, ""
+
+
 def library_constant(module: str, name: str) -> str | None:
     """The text that a module of a framework has under a name; None for anything else."""
     for framework in FRAMEWORKS:

@@ -16,9 +16,11 @@ from smachac.pysource.machines.values import (
     Const,
     LibraryClass,
     OneOf,
+    OpenText,
     TupleValue,
     Unknown,
     Value,
+    open_text,
 )
 
 LONGEST_TEXT, MOST_ITEMS, MOST_BITS = 100_000, 10_000, 1_000
@@ -37,6 +39,10 @@ _OPERATIONS: Mapping[type[ast.operator], Callable[[Any, Any], object]] = {
 
 _WIDTH = re.compile(r"%[^a-zA-Z%]*(?:\d{3}|\*)")
 """A place of a text for `%` whose width can be large."""
+
+
+_OTHER_PLACE = re.compile(r"%(?![sd%])")
+"""A place of a text for `%` with more than a plain text or number."""
 
 
 def same(left: Value, right: Value) -> bool | None:
@@ -88,28 +94,41 @@ def bounded(data: object, span: Span | None) -> Value:
 def filled_in(text: str, right: Value, span: Span | None) -> Value:
     """A text that `%` fills in."""
     items = right.items if isinstance(right, TupleValue) else (right,)
-    values = tuple(item.value for item in items if isinstance(item, Const))
+    is_open = any(isinstance(item, OpenText) for item in items)
+    if is_open:
+        if _OTHER_PLACE.search(text):
+            return UNKNOWN
+        text = text.replace("%d", "%s")
+    values = tuple(part for item in items if (part := _data(item)) is not None)
     size = len(text) + sum(len(str(value)) for value in values)
     if len(values) != len(items) or size > LONGEST_TEXT or _WIDTH.search(text):
         return UNKNOWN
     try:
-        return bounded(text % values, span)
+        found = text % values
     except (TypeError, ValueError, OverflowError):
         return UNKNOWN
+    return open_text(found) if is_open else bounded(found, span)
+
+
+def _data(value: Value) -> object:
+    """A number or text, also one with an open part; None: not known."""
+    return value.text if isinstance(value, OpenText) else getattr(value, "value", None)
 
 
 def formatted(parts: Iterable[Value], span: Span | None) -> Value:
     """The text of an f-string without formats."""
     texts: list[str] = []
-    size = 0
+    size, is_open = 0, False
     for part in parts:
-        if not isinstance(part, Const):
+        if not isinstance(part, Const | OpenText):
             return UNKNOWN
-        texts.append(str(part.value))
+        is_open = is_open or isinstance(part, OpenText)
+        texts.append(part.text if isinstance(part, OpenText) else str(part.value))
         size += len(texts[-1])
         if size > LONGEST_TEXT:
             return UNKNOWN
-    return Const("".join(texts), span)
+    whole = "".join(texts)
+    return open_text(whole) if is_open else Const(whole, span)
 
 
 def has_width(text: str) -> bool:

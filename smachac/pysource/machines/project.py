@@ -14,6 +14,7 @@ from smachac.pysource.machines.evaluator import BudgetError, Evaluator
 from smachac.pysource.machines.libraries import (
     library_module,
     method_of,
+    misplaced,
     new_object,
     of_framework,
     signature_of_method,
@@ -58,9 +59,7 @@ class Repository:
         self.parse = parse or module_text
         self.by_stem: dict[str, list[str]] = {}
         for file in files:
-            path = PurePath(file)
-            stem = path.parent.name if path.name == "__init__.py" else path.stem
-            self.by_stem.setdefault(stem, []).append(file)
+            self.by_stem.setdefault(_stem(file), []).append(file)
         self.loaded: dict[str, ModuleValue | Unknown] = {}
         self.libraries: dict[str, ModuleValue] = {}
         self.imported: dict[str, dict[str, None]] = {}
@@ -80,9 +79,7 @@ class Repository:
 
     def has(self, file: str) -> bool:
         """Whether a file is one of the repository."""
-        path = PurePath(file)
-        stem = path.parent.name if path.name == "__init__.py" else path.stem
-        return file in self.by_stem.get(stem, ())
+        return file in self.by_stem.get(_stem(file), ())
 
     def load(self, evaluator: Evaluator, name: str, user: ModuleValue) -> Value:
         """A module by its dotted name; unknown, with its name, if the repository has none."""
@@ -107,27 +104,44 @@ class Repository:
             todo += sorted(new)
         return found
 
+    def misplaced(self, module: ModuleValue, name: str) -> tuple[Value, str]:
+        """The value of a name that a module of a framework lacks, and the module that has it."""
+        return misplaced(module.name, name)
+
+    def is_certain(self, name: str, user: ModuleValue) -> bool:
+        """Whether a module can be no other file: it is the only one of its name, or beside the file
+        that imports it."""
+        found = self.file_of(name, user)
+        beside = found is not None and PurePath(found).parent == PurePath(user.file).parent
+        return beside or len(self._files_named(name)) == 1
+
     def faults_of(self, file: str) -> list[UseFault]:
         """The faults in the main parts of the modules that a file imports."""
         modules = (self.loaded.get(other) for other in self.files_of(file) if other != file)
         return [fault for part in modules if isinstance(part, ModuleValue) for fault in part.faults]
 
     def file_of(self, name: str, user: ModuleValue) -> str | None:
-        """The file of a module."""
-        parts = name.split(".")
-        path = PurePath(*parts)
-        endings = (f"{path}.py", str(path / "__init__.py"))
-        found = [
-            file
-            for file in self.by_stem.get(parts[-1], ())
-            if any(file == end or file.endswith(os.sep + end) for end in endings)
-        ]
+        """The file of a module. In Python 2, a package can import a module in it of its own name
+        without a dot; only the main script imports itself."""
+        found = self._files_named(name)
         if not found:
             return None
         folders = PurePath(user.file).parent.parts
-        return min(
-            found, key=lambda file: (-_shared(folders, PurePath(file).parts), len(file), file)
-        )
+
+        def order(file: str) -> tuple[bool, int, int, str]:
+            return file == user.file, -_shared(folders, PurePath(file).parts), len(file), file
+
+        return min(found, key=order)
+
+    def _files_named(self, name: str) -> list[str]:
+        """The files that can be a module."""
+        path = name.replace(".", os.sep)
+        endings = (f"{path}.py", os.path.join(path, "__init__.py"))  # noqa: PTH118 (fast)
+        return [
+            file
+            for file in self.by_stem.get(name.rpartition(".")[2], ())
+            if any(file == end or file.endswith(os.sep + end) for end in endings)
+        ]
 
     def module(self, evaluator: Evaluator, file: str, *, main: bool = False) -> Value:
         """The module of a file, loaded with the first use."""
@@ -182,6 +196,12 @@ class Repository:
         sets = _setting(name)
         texts = (module.text for module in self.loaded.values() if isinstance(module, ModuleValue))
         return any(text is not None and sets.search(text.source.text) for text in texts)
+
+
+def _stem(file: str) -> str:
+    """The last name of a module, or of a package."""
+    folder, name = os.path.split(file)
+    return os.path.basename(folder) if name == "__init__.py" else name.removesuffix(".py")  # noqa: PTH119 (fast)
 
 
 def _setting(name: str) -> re.Pattern[str]:

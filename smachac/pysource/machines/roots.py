@@ -26,6 +26,7 @@ from smachac.pysource.machines.values import (
     Function,
     Instance,
     ModuleValue,
+    OpenText,
     Value,
     alternatives,
 )
@@ -109,7 +110,8 @@ def _built(
 
 
 def _roots(evaluator: Evaluator, before: int, file: str, *, closed: bool, complete: bool) -> Roots:
-    """The containers that were made since then, in this file, and are in no other one."""
+    """The containers that were made since then, by code or as an object of a class of this file,
+    and are in no other one."""
     containers = [made for made in evaluator.made[before:] if is_container(made)]
     inside = {
         id(part)
@@ -121,11 +123,22 @@ def _roots(evaluator: Evaluator, before: int, file: str, *, closed: bool, comple
         container
         for container in containers
         if id(container) not in inside
-        and container.span is not None
-        and container.span.source.name == file
+        and _is_of(container, file)
         and (_children(container) or "$executed" in container.slots)
     ]
     return Roots(containers=tuple(own), closed=closed, complete=complete)
+
+
+def _is_of(container: Instance, file: str) -> bool:
+    """Whether a container belongs to a file. A function of another file can have made it, from a
+    class that this one passes to it: its place is then the class."""
+    if container.span is not None and container.span.source.name == file:
+        return True
+    cls = container.cls
+    if not isinstance(cls, Class) or cls.frame.module.file != file:
+        return False
+    container.span = _place(cls.frame.module, cls)
+    return container.span is not None
 
 
 def _children(container: Instance) -> tuple[Added, ...]:
@@ -159,27 +172,34 @@ def _candidates(
 def _of_class(
     evaluator: Evaluator, cls: Class, module: ModuleValue, frame: Frame, *, variants: bool
 ) -> Iterator[Callable[[], object]]:
+    """Builds an object, and calls those of its methods that nothing calls. Of a class of which the
+    main part of the file has made an object, only the methods count."""
     order = evaluator.classes(cls)
     is_own = any(map(is_container_class, order))
     maker = cls.slots.get("__init__")
     is_made = isinstance(maker, Function) and maker.node in evaluator.called and not variants
-    if is_made or not (is_own or _builds(cls.node, module)):
+    if not (is_own or _builds(cls.node, module)):
         return
     methods = [
         value
         for value in cls.slots.values()
         if isinstance(value, Function) and value.owner is cls and not value.name.startswith("__")
-    ]
+        and (variants or value.node not in evaluator.called) and _builds(value.node, module)
+    ]  # fmt: skip
+    if is_made and (is_own or not methods):
+        return
 
     def build() -> None:
         arguments = Arguments()
         if isinstance(maker, Function):
             arguments = _unknown(maker, variants=variants).without_first()
+        before = len(evaluator.made)
         made = evaluator.make(cls, arguments, _place(module, cls), frame)
+        if is_made:
+            del evaluator.made[before:]
         for method in methods:
-            is_new = variants or method.node not in evaluator.called
-            if is_new and _builds(method.node, module):
-                given = _unknown(method, variants=variants)
+            if variants or method.node not in evaluator.called:
+                given = _unknown(method, variants=variants, once=False)
                 result = evaluator.run(method, given.without_first().with_first(made))
                 if method.name in framework_of(order).entries and is_container(result):
                     _run_by_framework(evaluator, result, cls)
@@ -198,13 +218,18 @@ def _place(module: ModuleValue, cls: Class) -> Span | None:
     return module.text.span(cls.node) if module.text is not None else None
 
 
-def _unknown(function: Function, *, variants: bool) -> Arguments:
-    """Unknown arguments for the parameters that have no default value; for `variants` for all."""
+def _unknown(function: Function, *, variants: bool, once: bool = True) -> Arguments:
+    """Unknown arguments for the parameters that have no default value; for `variants` for all. If
+    it is called `once` for an object, each of them is one text in all names."""
     taken = function.node.args
     positional = [*taken.posonlyargs, *taken.args]
-    names = [(argument.arg, UNKNOWN) for argument in taken.kwonlyargs] if variants else []
     known = 0 if variants else len(function.defaults)
-    return Arguments((UNKNOWN,) * (len(positional) - known), tuple(names))
+    given = (
+        OpenText(text=f"{{{argument.arg}}}") if once else UNKNOWN
+        for argument in positional[: len(positional) - known]
+    )
+    named = [(argument.arg, UNKNOWN) for argument in taken.kwonlyargs] if variants else []
+    return Arguments(tuple(given), tuple(named))
 
 
 def _builds(node: ast.AST, module: ModuleValue) -> bool:

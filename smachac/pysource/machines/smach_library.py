@@ -444,7 +444,6 @@ def functions_of(value: Value) -> Iterator[Function]:
 _MODULE: Mapping[str, Value] = {
     **classes("smach", "State CBState StateMachine Sequence Concurrence Iterator"),
     **classes("smach", "ConditionState CBInterface"),
-    **classes("smach_ros", "SimpleActionState ServiceState MonitorState"),  # before 1.2
     "cb_interface": Native("cb_interface", _cb_interface),
     "UserData": Native("UserData", _user_data),
     "Container": UNKNOWN,
@@ -494,6 +493,7 @@ SMACH = Framework(
     ]),
     static=frozenset(["add", "add_auto", "set_contained_state"]),  # of the container opened last
     overridden=frozenset(["add", "execute"]),
+    lacking={"smach": "smach_ros", "smach_ros": "smach"},
     parameters={**_PARAMETERS, **_OTHER_PARAMETERS},
     signatures=_SIGNATURES,
 )  # fmt: skip

@@ -64,6 +64,28 @@ class Unknown:
 UNKNOWN = Unknown()
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OpenText(Unknown):
+    """A text with a part that is not known, but the same wherever it is used: that of a parameter.
+    `text` has the name of the parameter in braces: `GO_TO_{place}`."""
+
+    text: str
+
+    @property
+    def start(self) -> str:
+        """The part before the first open part, with which each text begins that this can be."""
+        return self.text.partition("{")[0]
+
+
+def open_text(text: str) -> Value:
+    """A text with an open part, if it is no longer than a name."""
+    return OpenText(text=text) if len(text) <= LONGEST_NAME else UNKNOWN
+
+
+LONGEST_NAME = 200
+"""The most characters of a text with an open part."""
+
+
 @dataclass(frozen=True, slots=True)
 class Const:
     """A number, text, truth value or None, at the place where it is written."""
@@ -361,12 +383,20 @@ def one_of(values: Iterable[Value]) -> Value:
     for value in values:
         for part in value.values if isinstance(value, OneOf) else (value,):
             if isinstance(part, Unknown):
-                return part
+                return UNKNOWN if isinstance(part, OpenText) else part
             if all(part is not known and part != known for known in found):
                 found.append(part)
     if len(found) == 1:
         return found[0]
     return OneOf(tuple(found)) if 0 < len(found) <= MOST_ALTERNATIVES else UNKNOWN
+
+
+def text_of(value: Value) -> str | None:
+    """A text, with the names of the parameters in it if it is not known as a whole."""
+    match value:
+        case Const(value=str() as text) | OpenText(text=text):
+            return text
+    return None
 
 
 def alternatives(value: Value) -> tuple[Value, ...]:

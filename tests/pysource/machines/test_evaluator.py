@@ -258,6 +258,41 @@ if vendor.flag():
 else:
     found = vendor.found()
 """,
+    "the items of a dictionary as in Python 2": """
+after = {"A": "B", "B": "done"}
+sm = smach.StateMachine(outcomes=["done"])
+with sm:
+    for name in after.iterkeys():
+        smach.StateMachine.add(name, Do(), {"ok": after[name]})
+    del after["A"]
+    for target in after.itervalues():
+        assert target == "done"
+""",
+    "a method that ROS calls, of an object of the main part": """
+class Tour:
+    def __init__(self, name):
+        self.name = name
+        vendor.serve(self.run)
+    def run(self, goal):
+        sm = smach.StateMachine(outcomes=["done"])
+        with sm:
+            smach.StateMachine.add("A", Do(), {"ok": "B"})
+            smach.StateMachine.add("B", Do(), {"ok": "done"})
+        return sm.execute()
+
+if __name__ == "__main__":
+    Tour("tour")
+    vendor.spin()
+""",
+    "classes from the wrong module of SMACH": """
+import smach_ros
+from smach_ros import StateMachine as Tour
+sm = Tour(outcomes=["done"])
+with sm:
+    Tour.add("A", Do(), {"ok": "B"})
+    smach_ros.StateMachine.add("B", Do(), {"ok": "done"})
+smach.IntrospectionServer("tour", sm, "/TOUR").start()
+""",
     "recursion with known ends": """
 def chain(names):
     if not names:
@@ -275,6 +310,56 @@ with sm:
 @pytest.mark.parametrize("name", EXACT)
 def test_the_machine_is_exact(name: str) -> None:
     assert read(EXACT[name]).exact == CHAIN
+
+
+def test_a_class_that_a_function_of_another_module_makes_belongs_to_its_own_file() -> None:
+    code = """
+from starting import start
+class Tour(smach.StateMachine):
+    def __init__(self, robot):
+        smach.StateMachine.__init__(self, outcomes=["done"])
+        with self:
+            self.add("A", Do(), {"ok": "B"})
+            self.add("B", Do(), {"ok": "done"})
+start(Tour)
+"""
+    assert read(code, starting="def start(kind):\n    kind(None).execute()\n").exact == CHAIN
+
+
+def test_a_main_script_that_imports_itself() -> None:
+    code = """
+class Tour(smach.StateMachine):
+    def __init__(self):
+        smach.StateMachine.__init__(self, outcomes=["done"])
+        with self:
+            self.add("A", Do(), {"ok": "B"})
+            self.add("B", Do(), {"ok": "done"})
+if __name__ == "__main__":
+    from machine import Tour
+    Tour().execute()
+"""
+    assert read(code).exact == CHAIN
+
+
+def test_a_method_of_a_made_object_gives_no_machine_of_its_constructor_again() -> None:
+    code = """
+class Tours:
+    def __init__(self, last):
+        self.sm = self.made("A", last)
+    def made(self, name, after):
+        sm = smach.StateMachine(outcomes=["done"])
+        with sm:
+            smach.StateMachine.add(name, Do(), {"ok": after})
+        return sm
+    def again(self, request):
+        sm = smach.StateMachine(outcomes=["done"])
+        with sm:
+            smach.StateMachine.add("B", Do(), {"ok": "done"})
+        return sm.execute()
+Tours("done")
+"""
+    names = [[state.label for state in machine.states] for machine in read_machines(HEAD + code)]
+    assert names == [["A"], ["B"]]
 
 
 NOT_SURE = {
@@ -599,10 +684,54 @@ def test_a_name_that_a_module_may_have_is_no_fault(name: str) -> None:
     assert faults == []
 
 
+LACKING = {
+    "of a module": ("from names import AFTR", ("AFTR", "names.py", "")),
+    "with another name": ("from names import AFTER, AFTR as after", ("AFTR", "names.py", "")),
+    "of a package": ("from inner import names, other", ("other", "inner/__init__.py", "")),
+    "of a module of SMACH": (
+        "from smach_ros import StateMachine", ("StateMachine", "smach_ros", "smach"),
+    ),
+    "of the other module of SMACH": (
+        "import smach\nsmach.ServiceState('a', None)", ("ServiceState", "smach", "smach_ros"),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", LACKING)
+def test_a_name_that_an_imported_module_lacks_is_a_fault(name: str) -> None:
+    code, names = LACKING[name]
+    files = {"names.py": "AFTER = 1", "inner/__init__.py": "", "inner/names.py": ""}
+    _, faults = evaluated(code, files)
+    assert [(fault.kind, fault.names) for fault in faults] == [("missing member", names)]
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import vendor\nif vendor.flag():\n    from names import AFTR\n",
+        "try:\n    from names import AFTR\nexcept ImportError:\n    AFTR = 2\n",
+        "from robot.msg import Pose\nfrom robot.cfg import TourConfig",  # the build makes them
+        "from tools import AFTR",  # two files have this name
+        "from whole import AFTR",
+        "from twice import AFTER",  # a package with a module of its name
+        "from inner import broken",
+        "from smach import InvalidUserCodeError",
+    ],
+)
+def test_a_name_that_a_module_can_have_is_no_fault(code: str) -> None:
+    files = {
+        "names.py": "AFTER = 1", "robot/msg/__init__.py": "", "robot/cfg/__init__.py": "",
+        "a/tools.py": "", "b/tools.py": "", "whole.py": "from vendor import *",
+        "inner/__init__.py": "", "inner/broken.py": "def",
+        "twice/__init__.py": "from twice import *", "twice/twice.py": "AFTER = 1",
+    }  # fmt: skip
+    assert evaluated(code, files)[1] == []
+
+
 def test_a_name_that_a_module_cannot_have_is_a_fault() -> None:
     _, faults = evaluated("import names\nx = names.AFTR\n", {"names.py": "AFTER = 1"})
     assert [(fault.kind, fault.names) for fault in faults] == [
-        ("missing member", ("AFTR", "names.py"))
+        ("missing member", ("AFTR", "names.py", ""))
     ]
 
 

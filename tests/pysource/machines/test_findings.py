@@ -564,6 +564,62 @@ def test_files_of_a_repository_do_not_change_each_other(tmp_path: Path) -> None:
     assert codes == [["SM101"], [], ["SM101"]]
 
 
+CONTAINER = """
+class Part(smach.StateMachine):
+    def __init__(self, where):
+        {made}
+        self.userdata.count = 1
+        with self:
+            smach.StateMachine.add("USE", {state}, {{"ok": "ok"}})
+
+class Set(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=["ok"], output_keys=["part"])
+
+    def execute(self, userdata):
+        userdata.part = 1
+        return "ok"
+
+def main():
+    sm = smach.StateMachine(outcomes=["ok"])
+    {before}
+    with sm:
+        sm.add("PART", Part(vendor.where()), {{"ok": "LAST"}})
+        sm.add("LAST", Use())
+    sm.execute()
+
+main()
+"""
+
+SELECTED = """if where:
+            smach.StateMachine.__init__(self, ["ok"])
+        else:
+            smach.StateMachine.__init__(self, ["ok"], {keys})"""
+
+PRESET = "sm.userdata.part = 1"
+
+
+@pytest.mark.parametrize(
+    ("made", "state", "before", "codes"),
+    [
+        (SELECTED.format(keys="['part']"), "Use()", PRESET, []),
+        (SELECTED.format(keys="vendor.keys()"), "Use()", PRESET, []),
+        ('smach.StateMachine.__init__(self, ["ok"], vendor.keys())', "Use()", PRESET, []),
+        ('smach.StateMachine.__init__(self, ["ok"], vendor.keys())', "Use()", "", ["SM301"]),
+        ('smach.StateMachine.__init__(self, ["ok"], [], vendor.keys())', "Set()", "", []),
+        (SELECTED.format(keys="[], ['part']"), "Set()", "", []),
+    ],
+)
+def test_the_keys_of_a_container_are_not_known(
+    made: str, state: str, before: str, codes: list[str], tmp_path: Path
+) -> None:
+    code = CONTAINER.format(made=made, state=state, before=before or "pass")
+    assert sorted({item[:5] for item in found(code, tmp_path)}) == codes
+    coverage = PythonProject(Disk()).read(tmp_path / "machine.py").coverage
+    assert coverage is not None
+    assert coverage.unknown == ()
+
+
 def test_a_fault_of_a_module_belongs_to_each_file_that_imports_it(tmp_path: Path) -> None:
     (tmp_path / "names.py").write_text("import other\nFIRST = other.MISSING\n", "utf-8")
     (tmp_path / "other.py").write_text("import smach\n", "utf-8")
@@ -594,3 +650,57 @@ def test_a_comment_about_a_finding_that_only_all_rules_report_is_used(tmp_path: 
     path = tmp_path / "machine.py"
     report = PythonProject(Disk()).read(path, everything=True).report
     assert "SM105" not in {item.code for item in report}
+
+
+PYTHON_2 = """import smach
+
+class Do(smach.State):
+\tdef __init__(self):
+\t\tsmach.State.__init__(self, outcomes=["ok"], input_keys=["part"])
+
+\tdef execute(self, userdata):
+\t\tprint "Do", userdata.prat, "größer", `userdata.other`
+\t\ttry:
+\t\t\tuserdata.prt = 1; x = 1 <> 2
+\t\texcept ValueError, error: return "k"
+\t\treturn "ok"
+
+sm = smach.StateMachine(outcomes=["done"])
+with sm:
+\tsm.add("A", Do(), transitions={"ok": "doen",
+\t\t"okay": "done"})
+"""
+
+
+def test_places_in_python_2_are_those_of_the_code(tmp_path: Path) -> None:
+    path = tmp_path / "machine.py"
+    path.write_text(PYTHON_2, "utf-8")
+    report = PythonProject(Disk()).read(path).report
+    assert [(item.code, item.span.line, item.span.text) for item in report] == [
+        ("SM310", 8, "prat"),
+        ("SM310", 8, "other"),
+        ("SM309", 11, '"k"'),
+        ("SM101", 16, '"doen"'),
+        ("SM102", 17, '"okay"'),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("code", "line", "message", "help"),
+    [
+        ('print "a"\nx = = 3\n', 2, "this is valid neither in Python 2 nor in Python 3", "mark"),
+        ('print "a"\nx = (1,\n', 3, "this is valid neither in Python 2 nor in Python 3", "bracket"),
+        ('print "a"\nif x:\n    y\n  z\n', 4, "this is valid neither in Python 2 nor", "mark"),
+        ("x = = 3\n", 1, "this is not valid Python 3: invalid syntax", "mark"),
+        ("<<<<<<< HEAD\nx = 1\n", 1, "this is not valid Python 3: invalid syntax", "one version"),
+    ],
+)
+def test_the_first_syntax_error_of_both_versions(
+    code: str, line: int, message: str, help: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "machine.py"
+    path.write_text(f"{code}", "utf-8")
+    (item,) = PythonProject(Disk()).read(path).report
+    assert (item.code, item.span.line) == ("SM805", line)
+    assert item.finding.message.startswith(message)
+    assert help in (item.finding.help or "")

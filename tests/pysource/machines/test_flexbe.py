@@ -516,6 +516,7 @@ with _state_machine:
     add("D", Do(), transitions={"done": "finished"})
 """,
     "keys that are not known": """
+_state_machine.userdata.bolt = 1
 inner = OperatableStateMachine(outcomes=["over"], input_keys=vendor.keys())
 with inner:
     add("A", Use(), transitions={"done": "over"})

@@ -103,6 +103,15 @@ def test_a_folder_and_a_file_that_nobody_may_read(tmp_path: Path) -> None:
         assert [item.code for item in read(tmp_path / name).report] != []
 
 
+@pytest.mark.parametrize("deep", ["1" + " + 1" * 20_000, "-" * 3_000 + "1", "x" + ".a" * 4_000])
+def test_code_that_is_nested_too_deeply_is_not_called_invalid(deep: str, tmp_path: Path) -> None:
+    path = tmp_path / "machine.py"
+    path.write_text(f"import smach\nx = {deep}\nsm = smach.StateMachine(outcomes=['a'])\n")
+    (item,) = read(path).report
+    assert item.code == "SM805"
+    assert "not valid" not in item.finding.message
+
+
 LONG = "def work(n):\n    work(n)\n    work(n)\n\nwork(0)\n"
 
 

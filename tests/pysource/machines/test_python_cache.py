@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from smachac.commands.cli import main
-from smachac.driver import python_cache
+from smachac.diagnostics.source import Source
+from smachac.driver import batch, python_cache
 from smachac.driver.python_cache import cache_folder, own_files
 from smachac.driver.python_machines import PythonProject
 from smachac.frontend.files import PACKAGE
@@ -129,6 +130,35 @@ def test_a_folder_that_cannot_be_written_is_no_fault(
     first = check(capsys)
     assert check(capsys) == first
     assert len(read) == 2
+
+
+def test_a_second_run_parses_no_file(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = check(capsys)
+    parsed: list[str] = []
+
+    def noted(self: PythonProject, source: Source, *, compiled: bool = True) -> None:
+        parsed.append(source.name)
+
+    monkeypatch.setattr(PythonProject, "_tree", noted)
+    assert check(capsys) == before
+    assert parsed == []
+
+
+def test_a_python_file_is_never_read_as_a_script(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scripts: list[Path] = []
+    script = batch._Checker.script
+
+    def noted(self: batch._Checker, path: Path) -> object:
+        scripts.append(path)
+        return script(self, path)
+
+    monkeypatch.setattr(batch._Checker, "script", noted)
+    assert '"SM101"' in check(capsys)
+    assert scripts == []
 
 
 def test_a_change_of_smachac_counts(
