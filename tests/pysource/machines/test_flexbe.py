@@ -523,6 +523,7 @@ with inner:
 maker = OperatableStateMachine(outcomes=["over"], output_keys=vendor.keys())
 with maker:
     add("A", Make(), transitions={"done": "over"})
+_state_machine.userdata.bolt = 1
 with _state_machine:
     add("I", inner, transitions={"over": "M"}, remapping={"part": "bolt"})
     add("M", maker, transitions={"over": "USE"})
