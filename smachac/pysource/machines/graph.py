@@ -377,10 +377,11 @@ class _Builder:
             reason = self._missing(value, added) if value.opaque else f"its {what} are not known"
             return self.open_leaf(name, span, added, reason)
         facts = self._facts(value)
-        if facts is not None and self.framework(value).undeclared_outcomes:
+        declared = dict(outcomes)
+        named = [name for name in _outcomes_of(added) if name not in declared]
+        if named and facts is not None and self.framework(value).undeclared_outcomes:
             returned = {word.text for word in facts.returns}
-            named = {name: span for name in _outcomes_of(added) if name in returned}
-            outcomes = [*{**named, **dict(outcomes)}.items()]
+            outcomes = [*((name, span) for name in named if name in returned), *outcomes]
         required = sequence(value.slots.get("$required")) or ()
         names = {text for item in required if (text := _text(item)) is not None}
         if facts is not None:
@@ -701,8 +702,6 @@ class _Children:
         return not name or known or self.open_starts.isdisjoint(starts)
 
     def _remaps(self, node: Node, added: Added) -> Iterator[Remap]:
-        keys = {key.name for key in (*node.inputs, *node.outputs)}
-        is_spare = self.framework.undeclared_keys and not (isinstance(node, Leaf) and node.open)
         given = added.remapping
         items = given.items if isinstance(given, DictValue) else {}
         if (given is not None and not isinstance(given, DictValue) and not _is_none(given)) or (
@@ -710,11 +709,12 @@ class _Children:
         ):
             self.incomplete = True
             return
+        is_spare = self.framework.undeclared_keys and not (isinstance(node, Leaf) and node.open)
         for key, value in items.values():
             name, other = _text(key), _text(value)
             if name is None or other is None:
                 self.incomplete = True
-            elif name in keys or not is_spare:
+            elif not is_spare or name in {key.name for key in (*node.inputs, *node.outputs)}:
                 yield Remap(key=name, to=other, span=_place(key, added.span),
                             to_span=_place(value, added.span))  # fmt: skip
 

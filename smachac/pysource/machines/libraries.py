@@ -93,10 +93,10 @@ def library_module(known: dict[str, ModuleValue], name: str) -> Value | None:
         return known[name]
     if name in python_library.UNREAD:
         return Unknown(reason=name)
-    head, _, last = name.rpartition(".")
-    if head in _OF_PACKAGE:
-        return known.get(head)
-    return known.get(f".{last}") if head else None
+    top, dot, _ = name.partition(".")
+    if top in _OF_PACKAGE:
+        return known.get(top)
+    return known.get(f".{name.rpartition('.')[2]}") if dot else None
 
 
 def misplaced(module: str, name: str) -> tuple[Value, str]:

@@ -155,6 +155,18 @@ with _state_machine:
     add("A", InputState(0, "?"), {"received": "finished", "aborted": "failed",
         "no_connection": "failed"})  # !
 """,
+    "of classes that modules of flexbe_core define": """
+import flexbe_core.core.operatable_state_machine as machines
+from flexbe_core.core.event_state import EventState as Base
+class Grasp(Base):
+    def __init__(self):
+        super().__init__(outcomes=["held", "lost"])
+    def execute(self, userdata):
+        return "held"
+---
+with _state_machine:
+    machines.OperatableStateMachine.add("A", Grasp(), {"held": "finished"})  # !
+""",
 }
 OTHER_OUTCOME = {
     "a misspelt one": """
@@ -504,6 +516,7 @@ with _state_machine:
     add("D", Do(), transitions={"done": "finished"})
 """,
     "keys that are not known": """
+_state_machine.userdata.bolt = 1
 inner = OperatableStateMachine(outcomes=["over"], input_keys=vendor.keys())
 with inner:
     add("A", Use(), transitions={"done": "over"})
