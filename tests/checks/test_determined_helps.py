@@ -47,7 +47,8 @@ def look(outcomes: str, transitions: str) -> list[tuple[str, str, str | None]]:
          [("rejected", "did you mean `preempted`?")]),
         # no outcome is left
         ("[found, lost]", "found: SAY, lost: aborted, preempted: preempted",
-         [("preempted", "remove this transition: its outcomes `found` and `lost` have one")]),
+         [("preempted", "remove this transition: `found` and `lost`, all outcomes, have"
+           " transitions")]),
         # outcomes that a field adds
         (ENDS, "succeeded: SAY, aborted: aborted, preempted: preempted, timeout: aborted",
          [("timeout", "a state has the outcome `timeout` only with the field `timeout`: write"

@@ -78,7 +78,9 @@ def own_names(leaf: Leaf) -> TypeNames:
 
 def used_here(leaf: Leaf) -> tuple[Related, ...]:
     """The first state of a type, as a related place."""
-    what = "runs the function" if notation.is_function(leaf) else "is of the type"
+    what = "is an object of" if notation.is_python(leaf) else "is of the type"
+    if notation.is_function(leaf):
+        what = "runs the function"
     return other_place(leaf.span, f"`{leaf.name}` {what} `{leaf.type}`")
 
 

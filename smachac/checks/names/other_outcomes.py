@@ -56,9 +56,9 @@ def other_outcome(child: Node, step: Transition) -> str:
         transition.outcome for transition in child.transitions if transition.origin == "written"
     }
     if handled.issuperset(name for name in names if name != child.catches):
-        is_one = len(names) == 1
-        have = "its outcome" if is_one else "its outcomes"
-        return f"remove this transition: {have} {both(names)} {'has' if is_one else 'have'} one"
+        if len(names) == 1:
+            return f"remove this transition: `{names[0]}`, the only outcome, has a transition"
+        return f"remove this transition: {both(names)}, all outcomes, have transitions"
     return ends_of(child) or f"use one of its outcomes: {listed(names)}"
 
 

@@ -155,11 +155,12 @@ def missing_member(module: str, words: Sequence[Word], home: str = "") -> Findin
     more = sorted({word.text for word in others} - {first.text})
     names = listed([first.text, *more])
     own = module == first.span.source.name
-    help = "correct the name, or define it in the module"
+    what, it = ("the names", "them") if more else ("the name", "it")
+    help = f"correct {what}, or define {it} in the module"
     if home:
-        help = f"import it from `{home}`"
+        help = f"import {it} from `{home}`"
     elif own:
-        help = "correct the name, or import it"
+        help = f"correct {what}, or import {it}"
     return Finding(
         span=first.span,
         message=f"this file has no {names}" if own else f"`{module}` has no {names}",

@@ -1026,6 +1026,7 @@ class Evaluator:
                 continue
             name = self.value(key, frame)
             if isinstance(name, Const) and pairs is not None:
+                name = Const(name.value, self.span(key, frame))  # the entry, not the constant
                 if name.value in written:
                     repeated.append((name, bool(same(pairs[name.value][1], found))))
                 written.add(name.value)
