@@ -1,7 +1,9 @@
 """The VS Code extension in a real editor: findings, completion, hover, rename, picture.
 
+They are tried in a script, and in Python files for SMACH and YASMIN in a folder without a project.
+
 Started by scripts/vscode_test.sh, with the programs Node and code-server, the packed extension, and
-a folder for the files of the run. The picture of the last screen is `end.png` there.
+a folder for the files of the run. The last screens are `script.png` and `python.png` there.
 """
 
 from __future__ import annotations
@@ -116,6 +118,85 @@ def use(editor: Editor) -> None:
     print("the picture shows the states, and a click leads to the line")
 
 
+STATES = """\
+from yasmin import State
+
+
+class Grasp(State):
+    def __init__(self):
+        super().__init__(outcomes=["held", "lost"])
+
+    def execute(self, blackboard):
+        return "held" if blackboard["part"] else "lost"
+"""
+
+PICKING = """\
+from grippers import Grasp
+from yasmin import Concurrence, StateMachine
+
+pair = Concurrence(
+    {"LEFT": Grasp(), "RIGHT": Grasp()}, "missed", {"got": {"LEFT": "held", "RIGHT": "held"}},
+)
+sm = StateMachine(outcomes=["done", "failed"])
+sm.add_state("LOOK", Grasp(), transitions={"held": "PIAR", "lost": "failed"})
+sm.add_state("PAIR", pair, transitions={"got": "done", "missed": "LOOK"})
+"""
+
+PARCELS = """\
+import smach
+from belts import Weigh
+
+sm = smach.StateMachine(outcomes=["sorted"])
+with sm:
+    smach.StateMachine.add("WEIGH", Weigh(), {"light": "WEIGH", "heavy": "sotred"})
+"""
+
+
+def use_python(editor: Editor) -> None:
+    """Use the extension in Python files."""
+    page = editor.page
+    editor.open("picking.py")
+    page.keyboard.press("Control+Shift+M")
+    problem = editor.shown(".markers-panel .monaco-list-row", "neither a state nor an outcome")
+    print("a file for YASMIN starts the server, and its finding is in the panel Problems")
+
+    page.locator(".editor-instance .view-lines").first.click()
+    editor.go_to(8, 53)
+    page.keyboard.press("Control+Delete")
+    page.keyboard.type("PAIR")
+    problem.wait_for(state="detached")
+    editor.save()
+    print("the finding vanishes while one types")
+
+    editor.go_to(8, 15)
+    editor.command("Show or Focus Hover")
+    editor.shown(".monaco-hover", "on held: to PAIR")
+    page.keyboard.press("Escape")
+    print("the hover describes a state")
+
+    editor.go_to(8, 53)
+    page.keyboard.press("F12")
+    editor.at(9, 15)
+    print("a target leads to the call that adds the state")
+
+    editor.go_to(5, 16)
+    page.keyboard.press("F12")
+    page.locator(".tab.active:has-text('grippers.py')").wait_for()
+    print("the object of a state leads to its class")
+
+    editor.open("picking.py")
+    editor.command("smachac: Draw")
+    picture = page.frame_locator("iframe.webview").frame_locator("iframe#active-frame")
+    picture.locator("svg .node:has-text('RIGHT')").wait_for()
+    picture.locator("svg .node:has-text('LOOK')").click()
+    editor.at(8, 1)
+    print("the picture shows the states, and a click leads to the line")
+
+    editor.open("parcels.py")
+    editor.shown(".markers-panel .monaco-list-row", "`sotred` is neither a state nor an outcome")
+    print("so it is in a file for SMACH")
+
+
 @contextmanager
 def started_server(arguments: list[str], log: Path) -> Iterator[str]:
     """The address of a running code-server."""
@@ -137,8 +218,8 @@ def started_server(arguments: list[str], log: Path) -> Iterator[str]:
             server.wait()
 
 
-def main(node: str, code_server: str, extension: str, folder: str) -> None:
-    run = Path(folder).resolve()
+def main(node: str, code_server: str, extension: str, output: str) -> None:
+    run = Path(output).resolve()
     shutil.rmtree(run, ignore_errors=True)
     project = run / "project"
     shutil.copytree(ROOT / "examples" / "08_pick_and_place", project)
@@ -146,6 +227,10 @@ def main(node: str, code_server: str, extension: str, folder: str) -> None:
     script = project / "main.yml"
     text = script.read_text("utf-8")
     script.write_text(text.replace("succeeded: LOAD_BLOCK", "succeeded: NOWHERE", 1), "utf-8")
+    python = run / "python"
+    (python / ".git").mkdir(parents=True)  # a repository of its own
+    for name, text in (("grippers", STATES), ("picking", PICKING), ("parcels", PARCELS)):
+        (python / f"{name}.py").write_text(text, "utf-8")
     settings = run / "data" / "User" / "settings.json"
     settings.parent.mkdir(parents=True)
     settings.write_text(json.dumps(SETTINGS))
@@ -157,12 +242,13 @@ def main(node: str, code_server: str, extension: str, folder: str) -> None:
     with started_server(program, run / "server.log") as address, started_browser() as browser:
         page = browser.new_page(viewport={"width": 1500, "height": 900})
         page.set_default_timeout(LONGEST)
-        try:
-            page.goto(f"{address}/?folder={project}")
-            page.locator(".explorer-folders-view").wait_for()
-            use(Editor(page))
-        finally:
-            page.screenshot(path=run / "end.png")
+        for name, folder, steps in (("script", project, use), ("python", python, use_python)):
+            try:
+                page.goto(f"{address}/?folder={folder}")
+                page.locator(".explorer-folders-view").wait_for()
+                steps(Editor(page))
+            finally:
+                page.screenshot(path=run / f"{name}.png")
 
 
 if __name__ == "__main__":

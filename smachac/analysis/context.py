@@ -128,6 +128,18 @@ class Context:
         return tuple((path, node) for path, node in self.states if not isinstance(node, Leaf))
 
     @cached_property
+    def around_any_key(self) -> frozenset[str]:
+        """The paths of the containers around states of YASMIN that can use any key: their remapping
+        is for these states."""
+        found: set[str] = set()
+        for path, node in self.states:
+            outer = path.rpartition("/")[0] if isinstance(node, Leaf) and node.any_key else ""
+            while outer and outer not in found:
+                found.add(outer)
+                outer = outer.rpartition("/")[0]
+        return frozenset(found)
+
+    @cached_property
     def leaves_with_variables(self) -> tuple[tuple[str, Leaf], ...]:
         """The leaves that have variables or input keys, with their paths."""
         return tuple(

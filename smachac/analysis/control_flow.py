@@ -140,7 +140,7 @@ def _never_ends(path: str, node: Node, inner: set[str]) -> bool:
             return False
         case Concurrence():
             lasting = [f"{path}/{child.name}" in inner for child in node.children]
-            return bool(lasting) and (all(lasting) if node.join == "any" else any(lasting))
+            return bool(lasting) and (any(lasting) if node.join == "all" else all(lasting))
     skips = any(edge.source == START and isinstance(edge.target, tuple) for edge in edges(node))
     lasting = [f"{path}/{child.name}" in inner for child in node.children]
     return bool(lasting) and all(lasting) and not skips

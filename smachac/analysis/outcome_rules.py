@@ -207,9 +207,9 @@ class SoundConcurrence:
 
 def sound_concurrence(path: str, node: Concurrence) -> SoundConcurrence | None:
     """The rules of a concurrence; None if it has no states, two states of one name, or a rule with
-    an unknown name."""
+    an unknown name, or if it ends with the first rule that holds: any of them can be it."""
     children = {child.name: child for child in node.children}
-    if not children or len(children) < len(node.children):
+    if not children or len(children) < len(node.children) or node.join == "rule":
         return None
     ends = {
         name: None if has_no_interface(child) else frozenset(outcome_names(child))

@@ -50,7 +50,7 @@ examples:
   smachac check . --fix --diff                   show what --fix would change, as a patch
   smachac check main.yml --sim                   check what the simulated arm can reach
   smachac check main.yml --watch                 check again after every change
-  smachac check machine.py                       a machine in Python for SMACH or YASMIN
+  smachac check machine.py                       a machine in Python for SMACH, YASMIN or FlexBE
   smachac check src --python                     all scripts, and all Python files with machines
 
 exit codes: 0 success, 1 findings that fail, 2 wrong usage, 70 a bug in smachac, 130 interrupted
@@ -86,7 +86,7 @@ def check_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--sim", action="store_true",
                         help="also check what the simulated arm can reach")  # fmt: skip
     parser.add_argument("--python", action="store_true", help="in folders, also check Python files"
-                        " that build machines for SMACH or YASMIN")  # fmt: skip
+                        " that build machines for SMACH, YASMIN or FlexBE")  # fmt: skip
     parser.add_argument("--all", action="store_true", help="of Python files, report the findings of"
                         " all rules, not only what cannot work")  # fmt: skip
     parser.add_argument("--no-cache", action="store_true", help="read all Python files, also those"

@@ -76,7 +76,7 @@ FIRST_STEPS = """\
 There is no script in this folder or below.
 
 smachac new my_robot       create a project with a script that can be checked and run
-smachac check machine.py   find the errors in a machine in Python for SMACH or YASMIN
+smachac check machine.py   find the errors in a machine in Python for SMACH, YASMIN or FlexBE
 smachac --help             all commands, with examples"""
 
 

@@ -62,7 +62,7 @@ def diff_arguments(parser: argparse.ArgumentParser) -> None:
                         help="the git revision after (default: the files as they are)")  # fmt: skip
     report_output(parser, *FORMATS)
     parser.add_argument("--python", action="store_true", help="in folders, also compare Python"
-                        " files that build machines for SMACH or YASMIN")  # fmt: skip
+                        " files that build machines for SMACH, YASMIN or FlexBE")  # fmt: skip
     machine_name(parser)
     search_folders(parser)
     colour(parser)

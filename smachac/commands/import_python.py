@@ -36,8 +36,8 @@ examples:
   smachac check project/main.yml                      then: find the errors in the script
   smachac build project/main.yml --target python      and generate its program
 
-The code of your states stays where it is: the scripts name your classes. States of SCXML and
-YASMIN get classes whose code is to be written. The command prints what
+The code of your states stays where it is: the scripts name your classes, for SMACH or for YASMIN.
+States of SCXML and XML get classes whose code is to be written. The command prints what
 it could not take over, and proves that each script has the same graph as the machine in the file.
 Your code is not run. Files that were edited since an import are never overwritten.
 
@@ -120,13 +120,13 @@ def import_command(arguments: Namespace) -> int:
         return usage(message, arguments.machine, made.all_names)
     if not made.names:
         print(f"no state machine found in {shown(path)}\nhelp: name the file that builds"
-              " `smach.StateMachine`", file=sys.stderr)  # fmt: skip
+              " `smach.StateMachine`, or one of YASMIN", file=sys.stderr)  # fmt: skip
         return FINDINGS
     for machine in made.incomplete:
         why = "parts of it are not known"
         help = "add states to it" if is_xml else KNOWN
         if machine.framework:
-            why = f"machines for {machine.framework} are not imported"
+            why = "it cannot become a script"
             help = "`smachac check` and `smachac view` read it; a script has to be written by hand"
         print(f"error: `{machine.name}` was not imported: {why}", file=sys.stderr)
         for span, reason in machine.unknown:

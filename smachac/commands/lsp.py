@@ -35,8 +35,7 @@ def lsp_command(arguments: Namespace) -> int:
         print("smachac: error: the language server needs pygls: pip install 'smachac[lsp]'",
               file=sys.stderr)  # fmt: skip
         return USAGE
-    gc.enable()  # the command line disables it, but this process lives long
-    gc.freeze()
+    gc.freeze()  # the server collects garbage between two checks
     with open(os.dup(sys.stdout.fileno()), "wb") as stream:  # the server closes it  # noqa: PTH123
         make_server().start_io(stdout=stream)
     return OK

@@ -1,4 +1,4 @@
-"""Python files with machines for SMACH or YASMIN: read, checked by the rules, suppressed."""
+"""Python files with machines of a framework: read, checked by the rules, suppressed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TypeAlias
 
 from smachac.checks import check_machine, rules
-from smachac.checks.rule import Rule
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, grouped, in_order
 from smachac.diagnostics.severities import apply_severities
 from smachac.diagnostics.source import Source, Span, Word
@@ -55,8 +54,6 @@ branches (SM405) is none of them: both can use parts of one value, as entries of
 _ALL_RULES = rules()
 
 _RULES = frozenset(rule.code.code for rule in _ALL_RULES)
-
-_DEFAULT_RULES = tuple(rule for rule in _ALL_RULES if rule.code.code in CANNOT_WORK)
 
 IN_ALL = frozenset({"SM201", "SM203"})
 """The codes of findings that count only if they are true of each instance of a container: another
@@ -124,7 +121,6 @@ class PythonProject:
             return PythonFile(path=path, source=source, report=found)
         read_before = [*report]
         whole_rules = everything or MARK in source.text  # a comment can be about any finding
-        rules = _ALL_RULES if whole_rules else _DEFAULT_RULES
         repository, evaluator, reader = self._repository(path, whole_rules)
         del evaluator.faults[:]
 
@@ -141,13 +137,15 @@ class PythonProject:
         with deep_recursion():
             several = machines_of(repository, evaluator, str(path), made_first)
             whole = [graph for some in several for graph in some]
-            findings = [item for graph in whole for item in _checked(graph, rules)]
+            findings = [item for graph in whole for item in _checked(graph, whole=whole_rules)]
             findings = _in_file(findings, str(path))
             variants: list[Graph] = []
-            if any(item.code in IN_ALL and (everything or _cannot_work(item)) for item in findings):
+            stops = _stops(whole)
+            if any(item.code in IN_ALL and (everything or _is_default(item, stops))
+                   for item in findings):  # fmt: skip
                 some = variants_of(repository, evaluator, str(path), made)
                 variants = [graph for several in some for graph in several]
-                more = (item for graph in variants for item in _checked(graph, rules))
+                more = (item for graph in variants for item in _checked(graph, whole=whole_rules))
                 own = _in_file([*more], str(path))
                 findings += [item for item in own if item.code in IN_ALL]
         report += _true_of_all(findings, [graph.machine for graph in (*whole, *variants)])
@@ -158,7 +156,7 @@ class PythonProject:
         self.disk.searched.update(repository.files_of(str(path)))
         rest, _, _ = suppress([*map(_of_python, report)], source, (source,), CODES)
         if not everything:
-            rest = [item for item in rest if _cannot_work(item)]
+            rest = [item for item in rest if _is_default(item, stops)]
         found = grouped(apply_severities(in_order(rest), library.policy))
         coverage = coverage_of(whole)
         if cache is not None and not read_before:
@@ -320,11 +318,23 @@ def _unreadable(source: Source) -> Diagnostic:
     return errors.unreadable_module(place, message, help)
 
 
-def _checked(graph: Graph, rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
-    """The findings of rules about a machine: all, or for a framework with other rules the errors
-    that are faults in it too, with their effects in its terms."""
+def _stops(graphs: Sequence[Graph]) -> frozenset[str]:
+    """The codes of rules that are reported by default: with such a fault a machine cannot work in
+    its framework."""
+    frameworks = {graph.framework.name: graph.framework for graph in graphs}.values()
+    return frozenset().union(*(
+        CANNOT_WORK if framework.effects is None else framework.effects.keys() - framework.works
+        for framework in frameworks
+    ))  # fmt: skip
+
+
+def _checked(graph: Graph, *, whole: bool) -> Iterator[Diagnostic]:
+    """The findings of rules about a machine: of all if `whole`. For a framework with other rules
+    they are the errors that are faults in it too, with their effects in its terms."""
     effects = graph.framework.effects
-    for item in check_machine(graph.machine, rules):
+    stops = _stops([graph])
+    chosen = tuple(rule for rule in _ALL_RULES if whole or rule.code.code in stops)
+    for item in check_machine(graph.machine, chosen):
         if effects is None:
             yield item
         elif item.severity is Severity.ERROR and item.code in effects:
@@ -332,10 +342,10 @@ def _checked(graph: Graph, rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
             yield replace(item, finding=replace(item.finding, effect=effect))
 
 
-def _cannot_work(item: Diagnostic) -> bool:
+def _is_default(item: Diagnostic, stops: frozenset[str]) -> bool:
     """Whether a finding is reported by default: not those of rules about what can work."""
     of_rule = item.code in _RULES
-    return not of_rule or (item.code in CANNOT_WORK and item.severity is Severity.ERROR)
+    return not of_rule or (item.code in stops and item.severity is Severity.ERROR)
 
 
 def _of_python(item: Diagnostic) -> Diagnostic:

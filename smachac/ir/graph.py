@@ -86,7 +86,7 @@ def _live_transitions(child: Node) -> Sequence[Transition]:
 
 
 def _has_no_interface(child: Node) -> bool:
-    return isinstance(child, Leaf) and child.open
+    return isinstance(child, Leaf) and child.open and not child.any_key
 
 
 def is_unread(child: Node) -> bool:
@@ -96,8 +96,7 @@ def is_unread(child: Node) -> bool:
 
 def _targets_inside(child: Node, names: frozenset[str]) -> list[str]:
     """The states of its container, which have these names, to which a child can lead."""
-    has_no_interface = isinstance(child, Leaf) and child.open
-    declared = None if has_no_interface else {outcome.name for outcome in child.outcomes}
+    declared = None if _has_no_interface(child) else {outcome.name for outcome in child.outcomes}
     return [  # `leads_to_child` in place, as every check of a state comes here
         step.target
         for step in child.transitions

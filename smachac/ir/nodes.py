@@ -277,6 +277,7 @@ class Leaf(_State):
 
     The other fields are facts of the state type (docs/state_types.md, Facts). `built_in` is the
     name of the built-in state type; it is empty for a type of the user, also for one of that name.
+    `any_key`: it is a state of YASMIN; it is open, but its outcomes are known.
     `misplaced_keys` are the input keys that the script writes as variables of the state (SM003).
     `synthetic`: no such state is written; it stands for what is not known of its container.
     """
@@ -290,6 +291,7 @@ class Leaf(_State):
     class_facts: ClassFacts | None = field(default=None, compare=False, repr=False)
     built_in: str = field(default="", compare=False, repr=False)
     stand_in: bool = field(default=False, compare=False, repr=False)
+    any_key: bool = field(default=False, compare=False, repr=False)
     adds_frames: tuple[str, ...] | None = field(default=None, compare=False, repr=False)
     misplaced_keys: tuple[str, ...] = field(default=(), compare=False, repr=False)
 
@@ -336,13 +338,15 @@ class Concurrence(_Container):
     container.
 
     `join`: "all" waits for every child, "any" preempts the others when the first child ends. Of
-    several matching rules the one with most conditions applies.
+    several matching rules the one with most conditions applies. "rule", of machines for FlexBE:
+    the first rule in their order that matches what has ended applies at once, and the other
+    children are stopped; there is no default outcome.
     """
 
     keyword: ClassVar[str] = "concurrence"
     default_outcome: str = ""
     rules: tuple[OutcomeRule, ...] = ()
-    join: Literal["all", "any"] = "all"
+    join: Literal["all", "any", "rule"] = "all"
     default_span: Span = field(default=NOWHERE, compare=False, repr=False)
 
 
@@ -508,6 +512,12 @@ class StateType:
         the class names."""
         known = self.class_facts is not None and self.class_facts.parameters is not None
         return "variables" in self.given or (self.open and not known)
+
+    @property
+    def any_key(self) -> bool:
+        """Whether the states can use any key of a blackboard, as a class of YASMIN can whose
+        interface has `input_keys: {"*": {}}`."""
+        return "yasmin" in self.code and "input_keys" in self.given
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

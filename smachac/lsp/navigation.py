@@ -217,8 +217,8 @@ def _class_places(type_: StateType, facts: Facts) -> Iterator[Span]:
     known = type_.class_facts
     if known is not None and known.name is not None:
         yield known.name.span
-    elif ":" in type_.code.get("python", ""):
-        module = load_module(type_.code["python"].partition(":")[0], facts.library)
+    elif ":" in (code := type_.code.get("python") or type_.code.get("yasmin", "")):
+        module = load_module(code.partition(":")[0], facts.library)
         text = getattr(module, "text", None)
         if isinstance(text, Source):
             yield Span(text, 0, 0)

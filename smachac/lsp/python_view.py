@@ -246,13 +246,12 @@ def definitions(view: PythonView, offset: int) -> list[Span]:
 
 def _class_at(view: PythonView, offset: int) -> Iterator[Span]:
     """The class of the state whose object is made, or named, at an offset of a call that adds
-    it."""
+    it; or which the call at an offset makes, as in the dictionary of a concurrence."""
     for machine, path, node, _ in view.nodes():
-        if not _has(node.span, view, offset):
-            continue
         graph = view.graphs[machine]
         made = graph.objects.get((graph.machine.root.name, *path.split("/")[1:]))
-        if made is None or not _is_in_object(node.span, offset):
+        is_added = _has(node.span, view, offset) and _is_in_object(node.span, offset)
+        if made is None or not (is_added or _is_callee(made.span, view, offset)):
             continue
         text = made.cls.frame.module.text if isinstance(made.cls, Class) else None
         if isinstance(made.cls, Class) and text is not None:
@@ -261,9 +260,16 @@ def _class_at(view: PythonView, offset: int) -> Iterator[Span]:
             yield made.span
 
 
+def _is_callee(call: Span | None, view: PythonView, offset: int) -> bool:
+    """Whether an offset is in what a call calls."""
+    if call is None or not _has(call, view, offset):
+        return False
+    return offset - call.start <= max(call.text.find("("), 0)
+
+
 def _is_in_object(call: Span, offset: int) -> bool:
     """Whether an offset is in the argument of a call that is the object of a state: the second, or
-    that with the name `state`."""
+    that with the name `state`, or `sm` for a region of YASMIN."""
     source = Source(call.source.name, f"({call.text})", "python")
     text = python_text(source, template=False)
     if text is None:
@@ -271,7 +277,7 @@ def _is_in_object(call: Span, offset: int) -> bool:
     at = offset - call.start + 1
     for node in ast.walk(text.tree):
         if isinstance(node, ast.Call):
-            named = [keyword.value for keyword in node.keywords if keyword.arg == "state"]
+            named = [keyword.value for keyword in node.keywords if keyword.arg in ("state", "sm")]
             for value in [*node.args[1:2], *named]:
                 place = text.span(value)
                 if place.start <= at <= place.end:

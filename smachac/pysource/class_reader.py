@@ -46,6 +46,7 @@ from smachac.pysource.functions import is_generator, is_plain
 from smachac.pysource.imports import missing_imports
 from smachac.pysource.instance_members import missing_members, uncalled_members
 from smachac.pysource.library_names import missing_attributes
+from smachac.pysource.life_cycle import EXECUTE_ONLY, LifeCycle, in_cycle
 from smachac.pysource.local_values import local_values, text_of, unused_values
 from smachac.pysource.lost_outcomes import lost_outcomes
 from smachac.pysource.module_members import module_slips
@@ -235,12 +236,16 @@ def read_module(word: Word, library: UserCode) -> ClassFacts | None:
 
 
 def facts_of(
-    module: Module, node: ast.ClassDef, library: UserCode, *, whole: bool = True
-) -> ClassFacts | None:
+    module: Module, node: ast.ClassDef, library: UserCode, *, whole: bool = True,
+    cycle: LifeCycle = EXECUTE_ONLY,
+) -> ClassFacts | None:  # fmt: skip
     """The facts about a class of a module; None if it cannot be read. If it is not `whole`, only
-    those about its structure and about what `execute` returns, reads and writes."""
+    those about its structure and about what it returns, reads and writes. `cycle` are the methods
+    that its framework calls."""
     try:
-        return _facts(module, node, library) if whole else _structure(module, node, library)
+        if whole:
+            return _facts(module, node, library, cycle)
+        return _structure(module, node, library, cycle)
     except (RecursionError, MemoryError, ValueError):
         return None
 
@@ -281,10 +286,13 @@ def _at_the_name(fault: ClassFault, word: Word) -> ClassFault:
     return replace(fault, name=Word(fault.name.text, span))
 
 
-def _structure(module: Module, node: ast.ClassDef, library: UserCode) -> ClassFacts:
+def _structure(
+    module: Module, node: ast.ClassDef, library: UserCode, cycle: LifeCycle
+) -> ClassFacts:
     """The facts about the structure of a class and the flow of `execute`."""
     own = with_bases(module, node, library)
     flow, _, place = _execute(own, library)
+    flow = in_cycle(flow, own, library, cycle)
     name = Word(node.name, name_span(module.text, node))
     return _facts_of_flow(name, (*_faults(own, module, node), *slips(own)), flow, place)
 
@@ -309,7 +317,9 @@ def _facts_of_flow(
     )
 
 
-def _facts(module: Module, node: ast.ClassDef, library: UserCode) -> ClassFacts:
+def _facts(
+    module: Module, node: ast.ClassDef, library: UserCode, cycle: LifeCycle = EXECUTE_ONLY
+) -> ClassFacts:
     """The facts about a class."""
     own = with_bases(module, node, library)
     lists = _declared(own)
@@ -318,6 +328,7 @@ def _facts(module: Module, node: ast.ClassDef, library: UserCode) -> ClassFacts:
     flow, execute, place = _execute(own, library)
     if execute is not None and any(_is_userdata(fault, execute) for fault in undefined):
         flow = Flow()  # its code uses another name for the userdata
+    flow = in_cycle(flow, own, library, cycle)
     name = Word(node.name, name_span(module.text, node))
     faults = (*_faults(own, module, node), *undefined) if whole else ()
     return replace(

@@ -42,6 +42,14 @@ class SleepState(smach.State):
         return "succeeded"
 
 
+def state_of_yasmin(state: Any, outcomes: Any) -> Any:
+    """Put a state of YASMIN into a machine of SMACH, which cannot run it: the module for YASMIN
+    does. Of its outcomes, those of the script are declared."""
+    made = smach.State(outcomes=list(outcomes))
+    made.yasmin = state
+    return made
+
+
 def with_timeout(state: Any, seconds: Any, label: str = "STATE") -> Any:
     """Give a state a time limit: it ends with `timeout` if it is not done after so many seconds.
 

@@ -36,13 +36,16 @@ class BuildContext:
 
     `library` finds templates and interfaces. `options` are the `--option NAME=VALUE` of the
     command line. `levels` is the number of folders from that of the script down to that of the
-    output; 0 if the output is elsewhere. `findings` are those of the script.
+    output; 0 if the output is elsewhere. `findings` are those of the script. `wrappers` are the
+    functions of runtime/additions.py around the states of a type, by its name; each takes a state
+    and its outcomes.
     """
 
     library: Library
     options: Mapping[str, str] = field(default_factory=dict)
     levels: int = 0
     findings: Sequence[Diagnostic] = ()
+    wrappers: Mapping[str, str] = field(default_factory=dict)
 
 
 class OptionError(ValueError):

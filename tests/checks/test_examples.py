@@ -25,7 +25,7 @@ TARGETS = {"SM601": "cpp", "SM602": "cpp", "SM604": "cpp"}
 
 
 IN_THE_MESSAGE = {
-    "SM105", "SM204", "SM207", "SM210", "SM308", "SM402",
+    "SM105", "SM204", "SM207", "SM210", "SM402",
     "SM606", "SM610", "SM701", "SM704", "SM804",
 }  # fmt: skip
 """Codes whose messages contain what happens if the fault is left."""

@@ -88,6 +88,36 @@ def test_findings_as_one_types(client: Client, folder: Path) -> None:
     assert client.findings(uri) == []
 
 
+BEHAVIOR = """from flexbe_core import Behavior, EventState, OperatableStateMachine
+
+
+class Wait(EventState):
+    def __init__(self):
+        super().__init__(outcomes=["done"])
+
+    def execute(self, userdata):
+        pass
+
+
+class TaskSM(Behavior):
+    def create(self):
+        _state_machine = OperatableStateMachine(outcomes=["finished"])
+        with _state_machine:
+            OperatableStateMachine.add("WAIT", Wait(), transitions={"done": "finishd"})
+        return _state_machine
+"""
+
+
+def test_behaviors_of_flexbe(client: Client, folder: Path) -> None:
+    uri = client.open(folder / "task_sm.py", BEHAVIOR)
+    (finding,) = client.findings(uri)
+    assert (finding["code"], finding["severity"]) == ("SM101", 1)
+    assert finding["range"]["start"]["line"] == line_of(BEHAVIOR, "finishd")
+    assert "done" in hover(client, uri, position(BEHAVIOR, "WAIT"))
+    client.change(uri, BEHAVIOR.replace("finishd", "finished"))
+    assert client.findings(uri) == []
+
+
 def test_a_finding_can_be_allowed_by_a_code_action(client: Client, folder: Path) -> None:
     wrong = MACHINE.replace('"heavy": "stopped"', '"heavy": "stoped"')
     uri = client.open(folder / "parcels.py", wrong)
@@ -263,3 +293,119 @@ def test_states_of_loops_functions_and_classes(client: Client, folder: Path) -> 
         assert where(found) == [cls]
     found = ask(client, "definition", uri, position=position(MADE, "OUT"))
     assert where(found) == [("made.py", line_of(MADE, 'add("OUT"') + 1)]
+
+
+# --- machines for YASMIN
+
+GRIPPERS = '''from yasmin import State
+
+
+class Grasp(State):
+    """Closes the gripper."""
+
+    def __init__(self, force=1.0):
+        super().__init__(outcomes=["held", "lost"])
+
+    def execute(self, blackboard):
+        return "held" if blackboard["part"] else "lost"
+'''
+
+PICKING = """from grippers import Grasp
+from yasmin import CbState, Concurrence, StateMachine
+from yasmin_ros.basic_outcomes import SUCCEED
+
+
+def beep(blackboard):
+    return SUCCEED
+
+
+class Both(StateMachine):
+    def __init__(self):
+        super().__init__(outcomes=["over"])
+        pair = Concurrence(
+            states={"LEFT": Grasp(2.0), "RIGHT": CbState([SUCCEED], beep)},
+            default_outcome="missed",
+            outcome_map={"got": {"LEFT": "held", "RIGHT": SUCCEED}},
+        )
+        self.add_state("PAIR", pair, {"got": "over", "missed": "over"})
+
+
+sm = StateMachine(outcomes=["done", "failed"])
+sm.add_state("GRASP", Grasp(), transitions={"held": "BOTH", "lost": "failed"},
+             remappings={"part": "box"})
+sm.add_state("BOTH", Both(), {"over": "done"})
+sm.set_start_state("GRASP")
+"""
+
+
+@pytest.fixture
+def picking(folder: Path) -> Path:
+    (folder / "grippers.py").write_text(GRIPPERS)
+    (folder / "picking.py").write_text(PICKING)
+    return folder / "picking.py"
+
+
+def test_findings_in_a_file_for_yasmin(client: Client, picking: Path) -> None:
+    uri = client.open(picking)
+    assert client.findings(uri) == []
+    wrong = PICKING.replace('"held": "BOTH"', '"held": "BOHT"')
+    client.change(uri, wrong)
+    found = client.findings(uri)
+    assert [item["code"] for item in found] == ["SM101"]
+    assert "YASMIN raises an exception when the machine starts" in found[0]["message"]
+    client.change(uri, PICKING.replace('set_start_state("GRASP")', 'set_start_state("GRAPS")'))
+    assert [item["code"] for item in client.findings(uri)] == ["SM807"]
+    client.change(uri, PICKING.replace('add_state("BOTH"', 'add_state("done"'))
+    assert {item["code"] for item in client.findings(uri)} == {"SM101", "SM806"}
+    client.change(uri, PICKING)
+    assert client.findings(uri) == []
+
+
+def test_hover_in_a_file_for_yasmin(client: Client, picking: Path) -> None:
+    uri = client.open(picking)
+    shown = hover(client, uri, position(PICKING, "GRASP", 'add_state("GRASP'))
+    assert "state sm/GRASP" in shown
+    assert "on held: to BOTH" in shown
+    assert "state sm/BOTH" in hover(client, uri, position(PICKING, "BOTH", '"held": '))
+    assert "outcome `failed` of sm" in hover(client, uri, position(PICKING, "failed", '"lost": '))
+    left = hover(client, uri, position(PICKING, "LEFT"))
+    assert "state sm/BOTH/PAIR/LEFT" in left
+    assert "on held: PAIR ends with got" in left
+
+
+def test_definitions_in_a_file_for_yasmin(client: Client, picking: Path) -> None:
+    uri = client.open(picking)
+
+    def line(word: str, after: str) -> str:
+        (found,) = ask(client, "definition", uri, position=position(PICKING, word, after))
+        path = picking.parent / str(found["uri"]).rpartition("/")[2]
+        return path.read_text().splitlines()[int(found["range"]["start"]["line"])]
+
+    assert line("BOTH", '"held": ').startswith('sm.add_state("BOTH"')
+    assert line("Grasp", '"GRASP", ') == "class Grasp(State):"
+    assert line("Grasp", '"LEFT": ') == "class Grasp(State):"
+    assert line("Both", '"BOTH", ') == "class Both(StateMachine):"
+    assert line("pair", '"PAIR", ').strip() == "pair = Concurrence("
+    assert line("over", '"got": ').strip() == 'super().__init__(outcomes=["over"])'
+
+
+def test_symbols_and_picture_of_a_file_for_yasmin(client: Client, picking: Path) -> None:
+    uri = client.open(picking)
+    (machine,) = ask(client, "documentSymbol", uri)
+    assert machine["name"] == "sm"
+    assert [child["name"] for child in machine["children"]] == ["GRASP", "BOTH"]
+    assert [child["name"] for child in machine["children"][1]["children"]] == ["PAIR"]
+    found = client.ask("workspace/executeCommand", command="smachac.picture", arguments=[uri])
+    assert found["dot"].startswith("digraph")
+    assert found["places"]["sm/BOTH/PAIR/LEFT"]["line"] == line_of(PICKING, '"LEFT": G')
+
+
+def test_unsaved_texts_of_classes_of_yasmin_count(client: Client, picking: Path) -> None:
+    uri = client.open(picking)
+    assert client.findings(uri) == []
+    wrong = GRIPPERS.replace('"lost"]', '"gone"]').replace('else "lost"', 'else "gone"')
+    client.findings(client.open(picking.parent / "grippers.py", wrong))
+    while not client.diagnostics[uri]["diagnostics"]:
+        client.note(client.receive())
+    found = {item["code"] for item in client.diagnostics[uri]["diagnostics"]}
+    assert found == {"SM102"}

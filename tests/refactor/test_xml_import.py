@@ -383,7 +383,17 @@ def test_yasmin(tmp_path: Path) -> None:
     assert machine.root.initial == "B"
     first = node(machine, "Demo/A")
     assert isinstance(first, Leaf)
-    assert {variable.name: variable.value.data for variable in first.variables} == {"velocity": 0.5}
+    assert made.texts["templates/FooState.yml"].endswith(
+        'code: {yasmin: "imported_states:FooState"}\n'
+    )
+    own = made.texts["imported_states.py"]
+    assert "class FooState(demo.states.FooState):" in own
+    assert "        self.set_parameter('velocity', 0.5)\n" in own
+    assert "class BarState(yasmin.State):" in own
+    assert 'code: {yasmin: "demo:X"}\n' in made.texts["templates/X.yml"]
+    second = node(machine, "Demo/B")
+    assert isinstance(second, Leaf)
+    assert {variable.name: variable.value.data for variable in second.variables} == {"tries": 7}
     assert targets(first) == {"again": "B", "over": "end"}
     assert [(remap.key, remap.to) for remap in first.remaps] == [("part", "count")]
     both = node(machine, "Demo/Both")
@@ -393,6 +403,31 @@ def test_yasmin(tmp_path: Path) -> None:
         [("Left", "l"), ("Right", "r")]
     ]
     assert {preset.key: preset.value.data for preset in machine.root.userdata} == {"count": 3}
+
+
+@pytest.mark.parametrize(
+    ("state", "reason"),
+    [
+        ('type="cpp" class="demo/FooState"', "`demo/FooState` is no class of Python"),
+        ('type="py" class="FooState"', "`FooState` is no class of Python"),
+        ('type="py" module="my-demo" class="FooState"', "`my-demo.FooState` is no class"),
+        ('type="py" module="demo" class="class"', "`demo.class` is no class of Python"),
+        ('type="py" module="demo" class="A b"', "`demo.A b` is no class of Python"),
+    ],
+)
+def test_states_that_are_no_classes_of_python(state: str, reason: str, tmp_path: Path) -> None:
+    edge = '<Transition from="a" to="end"/>'
+    text = f'<StateMachine outcomes="end"><State name="S" {state}>{edge}</State></StateMachine>'
+    made = imported(text, tmp_path, "demo.xml")
+    assert any(reason in item.text for item in made.lost)
+    assert "raise NotImplementedError" in made.texts["imported_states.py"]
+    compile(made.texts["imported_states.py"], "imported_states.py", "exec")
+
+
+def test_rules_of_yasmin_that_can_both_hold_are_listed(tmp_path: Path) -> None:
+    text = DEMO.replace("</Concurrence>", '<OutcomeMap outcome="B"><Item state="Left"'
+                        ' outcome="l"/></OutcomeMap></Concurrence>')  # fmt: skip
+    assert any("can both hold" in item.text for item in imported(text, tmp_path, "demo.xml").lost)
 
 
 def test_yasmin_files_include_others(tmp_path: Path) -> None:

@@ -1,7 +1,9 @@
-"""A stand-in for the Python API of YASMIN 6.1.1 that generated modules use, with its errors.
+"""A stand-in for the Python API of YASMIN 6.1.1 that generated modules and machines of users need,
+with its errors.
 
 YASMIN is on no registry of packages. The behaviour was read in its source: state.cpp,
-state_machine.cpp, blackboard.cpp and their bindings.
+state_machine.cpp, concurrence.cpp, blackboard.cpp and their bindings. The states of a concurrence
+run one after the other.
 """
 
 from __future__ import annotations
@@ -33,6 +35,8 @@ class Blackboard:
     def __setitem__(self, key: str, value: Any) -> None:
         self._values[self._name(key)] = value
 
+    set, get = __setitem__, __getitem__
+
     def __delitem__(self, key: str) -> None:
         self._values.pop(self._name(key), None)
 
@@ -58,6 +62,28 @@ class State:
             raise RuntimeError("A state must have at least one possible outcome.")
         self._outcomes = set(outcomes)
         self._status = "idle"
+        self._parameters: dict[str, Any] = {}
+        self._defaults: dict[str, Any] = {}
+
+    def declare_parameter(self, name: str, description: str, *default: Any) -> None:
+        if default:
+            self._parameters.setdefault(name, default[0])
+
+    def set_parameter(self, name: str, value: Any) -> None:
+        self._parameters[name] = value
+
+    def get_parameter(self, name: str) -> Any:
+        return self._parameters[name]
+
+    def add_input_key(self, name: str, description: str, *default: Any) -> None:
+        if default:
+            self._defaults[name] = default[0]
+
+    def _inject(self, blackboard: Blackboard) -> None:
+        """Sets the keys with default values that the blackboard does not have."""
+        for key, value in self._defaults.items():
+            if key not in blackboard:
+                blackboard[key] = value
 
     def get_outcomes(self) -> set[str]:
         return set(self._outcomes)
@@ -79,7 +105,9 @@ class State:
 
     def __call__(self, blackboard: Blackboard | None = None) -> str:
         self._status = "running"
-        outcome = self.execute(Blackboard() if blackboard is None else blackboard)
+        board = Blackboard() if blackboard is None else blackboard
+        self._inject(board)
+        outcome = self.execute(board)
         if not isinstance(outcome, str):
             raise TypeError("Unable to cast Python instance to C++ type")
         if outcome not in self._outcomes:
@@ -90,10 +118,45 @@ class State:
         return outcome
 
 
+class CbState(State):
+    """A state that calls a function."""
+
+    def __init__(self, outcomes: Iterable[str], callback: Callable[[Blackboard], str]) -> None:
+        super().__init__(outcomes)
+        self._callback = callback
+
+    def execute(self, blackboard: Blackboard) -> str:
+        return self._callback(blackboard)
+
+
+class Concurrence(State):
+    """States that run at the same time. Of the rules, at most one may hold."""
+
+    def __init__(
+        self,
+        states: Mapping[str, State],
+        default_outcome: str,
+        outcome_map: Mapping[str, Mapping[str, str]] = {},
+    ) -> None:
+        super().__init__([*outcome_map, default_outcome])
+        self._states, self._default, self._rules = dict(states), default_outcome, outcome_map
+
+    def configure(self) -> None:
+        for state in self._states.values():
+            state.configure()
+
+    def execute(self, blackboard: Blackboard) -> str:
+        ended = {name: state(blackboard.copy()) for name, state in sorted(self._states.items())}
+        found = [outcome for outcome, rule in self._rules.items() if rule.items() <= ended.items()]
+        if len(found) > 1:
+            raise RuntimeError(f"More than one satisfied outcomes ({', '.join(found)})")
+        return found[0] if found else self._default
+
+
 class StateMachine(State):
     """A state machine. Classes that derive from it in Python cannot replace `execute`."""
 
-    def __init__(self, outcomes: Iterable[str]) -> None:
+    def __init__(self, outcomes: Iterable[str], handle_sigint: bool = False) -> None:
         super().__init__(outcomes)
         self._states: dict[str, State] = {}
         self._transitions: dict[str, dict[str, str]] = {}
@@ -163,6 +226,10 @@ class StateMachine(State):
             if name not in reached:
                 raise RuntimeError(f"State '{name}' is unreachable")
 
+    def configure(self) -> None:
+        for state in self._states.values():
+            state.configure()
+
     def get_current_state(self) -> str:
         return self._current
 
@@ -190,7 +257,9 @@ class StateMachine(State):
     def __call__(self, blackboard: Blackboard | None = None) -> str:
         self._status = "running"
         board = Blackboard() if blackboard is None else blackboard
+        self._inject(board)
         self.validate()
+        self.configure()
         self._cancel = False
         self._current = self._start_state
         self._call("start", board, self._start_state)
@@ -230,4 +299,4 @@ class StateMachine(State):
         return None
 
 
-__all__ = ["Blackboard", "State", "StateMachine"]
+__all__ = ["Blackboard", "CbState", "Concurrence", "State", "StateMachine"]

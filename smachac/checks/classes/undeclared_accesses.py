@@ -179,8 +179,7 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
                 guess, places = old.help, (*old.places, *places)
             yield Finding(
                 span=word.span,
-                message=f"{notation.code_of(leaf)} sets `{word.text}`, which is {what}: the value"
-                f" is discarded{never}",
+                message=f"{notation.code_of(leaf)} sets `{word.text}`, which is {what}{never}",
                 arguments=(word.text,),
                 help=guess or _added(leaf, facts, "output_keys", word.text),
                 related=(*places, *used_here(leaf)),

@@ -32,7 +32,7 @@ from smachac.ir.leaf import functions, key_names, variable_of
 from smachac.ir.nodes import Container, Leaf, Node, StateType, Struct
 
 
-@rule("SM308", "lossy-write", Severity.ERROR)
+@rule("SM308", "lossy-write", Severity.ERROR, effect="SMACH discards what the state sets")
 def lossy_write(context: Context) -> Iterator[Finding]:
     """A state sets a key that is not one of its output keys.
 
@@ -85,7 +85,7 @@ def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
                 added += f"; nothing in `{leaf.name}` sets {listed(unset)}"
             yield Finding(
                 span=span,
-                message=f"`{leaf.name}` sets `{key}`, which is {what}: the value is discarded",
+                message=f"`{leaf.name}` sets `{key}`, which is {what}",
                 arguments=(key,),
                 help=did_you_mean(guesser(unset)(key)) or added,
                 related=calls(leaf, span),
@@ -101,10 +101,9 @@ def _without_list(
     """The finding on a state without `output_keys` or `input_keys` whose code uses several keys."""
     part, verb = f"{role}_keys", "sets" if role == "output" else "reads"
     who = f"`{leaf.name}`" if role == "output" else f"the code of `{leaf.name}`"
-    lost = ": the values are discarded" if role == "output" else ""
     return Finding(
         span=span,
-        message=f"{who} {verb} {both(keys)}, but `{leaf.name}` has no `{part}`{lost}",
+        message=f"{who} {verb} {both(keys)}, but `{leaf.name}` has no `{part}`",
         arguments=tuple(keys),
         help=f"add `{part}: [{', '.join(keys)}]` to `{leaf.name}`",
         related=calls(leaf, span),
@@ -265,11 +264,11 @@ def _unlisted(context: Context, role: Literal["input", "output"]) -> Iterator[Fi
         known = DICTIONARY_METHODS if is_read else {word.text for word in facts.unlisted_reads}
         for word in first_of_each(words, known):
             near = unused(word.text) if word.text not in names else None
-            verb, lost = ("reads", "") if is_read else ("sets", ": the value is discarded")
+            verb = "reads" if is_read else "sets"
             yield Finding(
                 span=word.span,
                 message=f"the code of `{leaf.type}` {verb} `{word.text}`, which its `__init__` does"
-                f" not pass to `smach.State` as an {role} key{lost}",
+                f" not pass to `smach.State` as an {role} key",
                 arguments=(word.text,),
                 help=did_you_mean(near)
                 or f"add `{word.text}` to the `{role}_keys` of `smach.State.__init__`",

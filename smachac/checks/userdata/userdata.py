@@ -133,7 +133,7 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
 
     Exactly: in `remapping: {a: b}`, `a` is not a key of the state, or it is a key that the state
     needs and nothing in the container sets `b`. A warning if it is an optional key and `b` is
-    misspelt.
+    misspelt. Containers with states of YASMIN that can use any key are not checked.
 
     Wrong:
         name: sm
@@ -161,7 +161,9 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
               remapping: {pose: block_pose}
               transitions: {succeeded: held}
     """
-    yield from context.at_containers(_unknown_remaps, context.machine.definitions)
+    for finding in context.at_containers(_unknown_remaps, context.machine.definitions):
+        if finding.node not in context.around_any_key:
+            yield finding
     for missing in context.missing_keys("remapped"):
         yield from _remapped(context.types, missing)
     for scope in context.absorbed_flow.scopes.values():

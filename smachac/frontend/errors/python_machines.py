@@ -230,12 +230,12 @@ def unreadable_module(span: Span, message: str, help: str) -> Finding:
     "state-named-as-outcome",
     Severity.ERROR,
     unsuppressible=False,
-    effect="`add_state` raises an exception: the program stops",
+    effect="the call that adds it raises an exception: the program stops",
 )
 def state_named_as_outcome(word: Word) -> Finding:
-    """A state of a machine for YASMIN has the name of an outcome of the machine.
+    """A state of a machine for YASMIN or FlexBE has the name of an outcome of the machine.
 
-    YASMIN refuses such a state, because a transition to this name would have two meanings.
+    Both refuse such a state, because a transition to this name would have two meanings.
 
     Wrong:
         import yasmin

@@ -199,11 +199,12 @@ def _leaf(state: State) -> Leaf:
         outcomes=tuple(outcomes.values()),
         variables=(*state.variables, *_defaults(state)) if type_.variables else state.variables,
         writes=type_.writes,
-        open=type_.open,
+        open=type_.open or type_.any_key,
         blocking=type_.blocking,
         class_facts=type_.class_facts,
         built_in=type_.built_in,
         stand_in=type_.stand_in,
+        any_key=type_.any_key,
         adds_frames=type_.adds_frames,
         misplaced_keys=state.misplaced_keys,
     )
@@ -491,7 +492,7 @@ def _with_error(node: Node, words: Iterable[Word]) -> Node:
     neither has such an outcome nor is open."""
     for word in words:
         if word.text == ERROR:
-            has_no_interface = isinstance(node, Leaf) and node.open
+            has_no_interface = isinstance(node, Leaf) and node.open and not node.any_key
             own = has_no_interface or ERROR in outcome_names(node)
             return node if own else _catching(node, word.span)
     return node

@@ -35,7 +35,7 @@ def code_by_language(section: Section, report: Report) -> dict[str, str]:
     for language, value in declared_in(section):
         if isinstance(value, Scalar):
             found[language] = str(value.value)
-            help = _suggested_class(found[language]) if language == "python" else None
+            help = _suggested_class(language, found[language])
             if help is not None:
                 message = f"`{value.value}` is not the name of a class in a Python module"
                 arguments = ("class", str(value.value))
@@ -43,14 +43,18 @@ def code_by_language(section: Section, report: Report) -> dict[str, str]:
     return found
 
 
-def _suggested_class(text: str) -> str | None:
-    """The help for a text that is neither `module:Class` nor the name of a template; None for one
-    of these."""
+def _suggested_class(language: str, text: str) -> str | None:
+    """The help for a text that is neither `module:Class` nor, for Python, the name of a template;
+    None for one of these and for other languages."""
+    if language not in ("python", "yasmin"):
+        return None
     names = text.replace(":", ".", 1).split(".")
     importable = all(map(is_name, names))
-    if ":" in text:
-        form = "write it as `my_robot.states:Grasp`, or give the file name of a template"
-        return None if importable else form
+    has_template = language == "python"
+    if ":" in text or not has_template:
+        form = "write it as `my_robot.states:Grasp`"
+        form += ", or give the file name of a template" if has_template else ""
+        return None if ":" in text and importable else form
     if not importable or len(names) < 2 or names[-1] in TEMPLATE_ENDINGS:
         return None
     return f"write a colon before the class: `{'.'.join(names[:-1])}:{names[-1]}`"

@@ -214,8 +214,9 @@ def _replaced(type_: Type, number: Type) -> Type:
 LANGUAGES: Mapping[str, tuple[str, ...]] = {
     "python": ("py", "python2", "python3"),
     "cpp": ("c++", "cc", "cxx", "cplusplus", "c"),
+    "yasmin": (),
 }
-"""The languages of code, with other names for them."""
+"""The languages of code, with other names for them; `yasmin` is Python for YASMIN."""
 
 
 def check_language(word: Word, report: Report) -> None:

@@ -173,7 +173,7 @@ MEMO = {
 0: {'name': 'KIND', 'pattern': {'value': '(?:concurrence|sequence|iterator|machine|state)', 'flags': [], 'raw': None, '_width': [5, 11], '__type__': 'PatternRE'}, 'priority': 0, '__type__': 'TerminalDef'},
 1: {'name': 'ORIGIN', 'pattern': {'value': '(?:connector|implicit)', 'flags': [], 'raw': None, '_width': [8, 9], '__type__': 'PatternRE'}, 'priority': 0, '__type__': 'TerminalDef'},
 2: {'name': 'SUGAR', 'pattern': {'value': '(?:for_each|timeout|retry)', 'flags': [], 'raw': None, '_width': [5, 8], '__type__': 'PatternRE'}, 'priority': 0, '__type__': 'TerminalDef'},
-3: {'name': 'JOIN', 'pattern': {'value': '(?:all|any)', 'flags': [], 'raw': None, '_width': [3, 3], '__type__': 'PatternRE'}, 'priority': 0, '__type__': 'TerminalDef'},
+3: {'name': 'JOIN', 'pattern': {'value': '(?:rule|all|any)', 'flags': [], 'raw': None, '_width': [3, 4], '__type__': 'PatternRE'}, 'priority': 0, '__type__': 'TerminalDef'},
 4: {'name': 'CONSTANT', 'pattern': {'value': '(?:false|true|null)', 'flags': [], 'raw': None, '_width': [4, 5], '__type__': 'PatternRE'}, 'priority': 0, '__type__': 'TerminalDef'},
 5: {'name': 'NAME', 'pattern': {'value': '[^\\W\\d]\\w*', 'flags': [], 'raw': '/[^\\W\\d]\\w*/', '_width': [1, 4294967295], '__type__': 'PatternRE'}, 'priority': 0, '__type__': 'TerminalDef'},
 6: {'name': 'TYPE', 'pattern': {'value': '[^\\s"={}#][^\n"={}#]*', 'flags': [], 'raw': '/[^\\s"={}#][^\\n"={}#]*/', '_width': [1, 4294967295], '__type__': 'PatternRE'}, 'priority': 0, '__type__': 'TerminalDef'},

@@ -539,6 +539,16 @@ def _set_default(evaluator: Interpreter, arguments: Arguments, span: Span | None
     return UNKNOWN
 
 
+def _set_key(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    pairs, key = _pairs(arguments), arguments.get(1, "key")
+    me, value = arguments.positional[0], arguments.get(2, "value", UNKNOWN) or UNKNOWN
+    if isinstance(me, DictValue):
+        known = pairs is not None and isinstance(key, Const)
+        items = {**pairs, key.value: (key, value)} if known else UNKNOWN  # type: ignore[union-attr,dict-item]
+        evaluator.heap.set(me.slots, "items", items)
+    return NONE
+
+
 def _update(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
     me = arguments.positional[0]
     if isinstance(me, DictValue):
@@ -579,6 +589,8 @@ _DICT_METHODS: Mapping[str, Callable[[Interpreter, Arguments, Span | None], Valu
     "setdefault": _set_default,
     "update": _update,
     "pop": _pop_key,
+    "set": _set_key,  # of YASMIN's blackboard, as `remove` is
+    "remove": _pop_key,
     "keys": _parts(0),
     "values": _parts(1),
     "items": _parts(None),

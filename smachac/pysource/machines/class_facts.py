@@ -12,7 +12,7 @@ from smachac.diagnostics.source import Source, Span
 from smachac.ir.class_facts import ClassFacts
 from smachac.pysource.class_reader import NO_EXECUTE, facts_of, facts_of_callback
 from smachac.pysource.machines.dead_code import Choice, choices, live_facts, unknown_places
-from smachac.pysource.machines.libraries import library_constant
+from smachac.pysource.machines.libraries import framework_of, library_constant
 from smachac.pysource.machines.project import Repository
 from smachac.pysource.machines.proven_reads import doubtful_places
 from smachac.pysource.machines.state_comments import StateComments
@@ -75,7 +75,8 @@ class ClassReader:
             module = self._module(cls.frame.module)
             facts = None
             if module is not None:
-                facts = facts_of(module, cls.node, self.library, whole=self.whole)
+                cycle = framework_of(cls.order).life_cycle
+                facts = facts_of(module, cls.node, self.library, whole=self.whole, cycle=cycle)
             known = self.facts[id(cls.node)] = cls, facts
         facts = known[1]
         if facts is not None and any(fault.kind is NO_EXECUTE for fault in facts.faults):

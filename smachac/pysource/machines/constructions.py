@@ -21,12 +21,14 @@ from smachac.ir.nodes import Concurrence, Data, Expression, Leaf, Node, Struct
 from smachac.ir.nodes import Iterator as IteratorNode
 from smachac.ir.python_code import parse_code
 from smachac.ir.traversal import outcome_names, written_children
+from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import BudgetError, Evaluator
+from smachac.pysource.machines.framework import Call, noted_of, userdata_of
 from smachac.pysource.machines.graph import Graph
 from smachac.pysource.machines.libraries import parameters_of
 from smachac.pysource.machines.origins import Origins
 from smachac.pysource.machines.project import Repository
-from smachac.pysource.machines.smach_library import takes_node
+from smachac.pysource.machines.smach_library import SMACH, takes_node
 from smachac.pysource.machines.values import (
     Arguments,
     Class,
@@ -47,6 +49,9 @@ from smachac.pysource.machines.values import (
 from smachac.pysource.source import PythonText
 from smachac.pysource.syntax_tree import walk_code
 from smachac.records import dataclass, field, replace
+
+_FUNCTIONS = ("cb", "callback", "handler")
+"""How the names of parameters end that take a function."""
 
 MOST_COMBINATIONS = 256
 """The most combinations of outcomes for which a callback of a concurrence is evaluated."""
@@ -86,7 +91,9 @@ class Construction:
     a name for the state type. `types` are the types of ROS in the arguments, by the parameter:
     `std_srvs/SetBool`. `file` has the class, `cls_span` is its place, `doc` the first line of its
     docstring. `node`: the first argument was the node of ROS 2. `parameters` are the values for a
-    class that is to be written, where there is an `obstacle`."""
+    class that is to be written, where there is an `obstacle`. `code` is the key of the class in the
+    `code` of an interface. `calls` is the code of calls that change the state before it runs.
+    `refusal`: why no script can have such a state."""
 
     span: Span
     cls: ClassPlace | None = None
@@ -99,6 +106,9 @@ class Construction:
     file: str = ""
     doc: str = ""
     node: bool = False
+    code: str = "python"
+    calls: tuple[str, ...] = ()
+    refusal: str = ""
     cls_span: Span | None = field(default=None, compare=False)
 
 
@@ -121,20 +131,22 @@ class Callbacks:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Constructions:
     """The constructions of the states of a machine, the values that their userdata has first, the
-    items of iterators, and the callbacks of concurrences, each by the path of names. `registered`
-    are the calls that register other functions of containers, by their names, `shared` the paths of
+    items of iterators, and the callbacks of concurrences, each by the path of names. `noted` are
+    the calls that have an effect which is no part of a graph, by their names, `shared` the paths of
     states that are one object with the state of an earlier path, and their places. `modules` are
     those that the classes and the code need, each with the folder in which Python has to search
-    it. `ros` is the version of ROS that the code imports; 0: none."""
+    it. `ros` is the version of ROS that the code imports; 0: none. `one_rule`: a concurrence of
+    which two rules hold stops with an exception."""
 
     states: Mapping[Names, Construction]
     userdata: Mapping[Names, tuple[Argument, ...]]
     items: Mapping[Names, Argument]
     callbacks: Mapping[Names, Callbacks]
-    registered: tuple[tuple[str, Span], ...]
+    noted: tuple[tuple[str, Span], ...]
     shared: tuple[tuple[Names, Names, Span], ...]
     modules: Mapping[str, str]
     ros: int = 0
+    one_rule: bool = False
 
 
 def constructions(graph: Graph, evaluator: Evaluator, repository: Repository) -> Constructions:
@@ -156,21 +168,29 @@ class _Reader:
         userdata: dict[Names, tuple[Argument, ...]] = {}
         items: dict[Names, Argument] = {}
         callbacks: dict[Names, Callbacks] = {}
-        registered: list[tuple[str, Span]] = []
+        noted: list[tuple[str, Span]] = []
         for names, node in with_names(self.graph.machine.root):
             self.names = names
             made = self.graph.objects.get(names)
             around = self._class_around(names[:-1])
             if isinstance(node, Leaf):
                 if not node.synthetic:
-                    states[names] = self._state(made, node.span, around)
+                    state = self._of_framework(made, self._state(made, node.span, around))
+                    calls = [(call, _call_code(call)) for call in self._calls(made)]
+                    written = [] if state.obstacle else [code for _, code in calls if code]
+                    states[names] = replace(state, calls=tuple(written))
+                    noted += [(call.name, call.span or node.span) for call, code in calls
+                              if code not in written]  # fmt: skip
                 continue
             if made is None:
                 continue
             if isinstance(made.cls, Class):
-                states[names] = self._state(made, node.span, around)
+                states[names] = self._of_framework(made, self._state(made, node.span, around))
             inside = made if isinstance(made.cls, Class) else around
-            registered += _registered(made, node.span)
+            noted += [(call.name, call.span or node.span) for call in noted_of(made)]
+            defaults = made.slots.get("$defaults")
+            if defaults is not None and "$blackboard" not in made.slots:
+                noted.append(("add_input_key", getattr(defaults, "span", None) or node.span))
             userdata[names] = tuple(self._userdata(made, inside))
             if isinstance(node, IteratorNode):
                 items[names] = self._items(made, inside, node.items_span)
@@ -178,9 +198,30 @@ class _Reader:
                 callbacks[names] = self._callbacks(node, made)
         return Constructions(
             states=states, userdata=userdata, items=items, callbacks=callbacks,
-            registered=tuple(dict.fromkeys(registered)), shared=tuple(self._shared()),
+            noted=tuple(dict.fromkeys(noted)), shared=tuple(self._shared()),
             modules=dict(sorted(self.modules.items())), ros=self._ros(states),
+            one_rule=self.graph.framework.one_rule,
         )  # fmt: skip
+
+    def _of_framework(self, made: Instance | None, found: Construction) -> Construction:
+        """A construction with what the framework of the machine states of its class."""
+        framework = self.graph.framework
+        classes = self.evaluator.classes(made.cls) if made is not None else []
+        refusals = (framework.parts.get(getattr(cls, "name", "")) for cls in classes)
+        refusal = next((text for text in refusals if text is not None), "")
+        return replace(found, code=framework.code, refusal=refusal)
+
+    def _calls(self, made: Instance | None) -> list[Call]:
+        """The calls that are noted for a state, without those in the code of its class, which the
+        programs make too."""
+        if made is None:
+            return []
+        own = [self.evaluator.span(cls.node, cls.frame)
+               for cls in self.evaluator.classes(made.cls) if isinstance(cls, Class)]  # fmt: skip
+        return [
+            call for call in noted_of(made)
+            if call.span is None or not any(contains(outer, call.span) for outer in own if outer)
+        ]  # fmt: skip
 
     def _shared(self) -> Iterator[tuple[Names, Names, Span]]:
         """The states that are one object, without those in a container that is."""
@@ -225,14 +266,16 @@ class _Reader:
             return self._of_class(made, made.cls, span, around)
         found = self._arguments(made, around)
         named = {argument.name: argument for argument in found}
-        if "node" in named:
+        node = "node" in named and self.graph.framework is SMACH
+        if node:
             found = tuple(argument for argument in found if argument.name != "node")
-        callback = next((argument for argument in found if argument.name.endswith("cb")
+        callback = next((argument for argument in found if argument.name.endswith(_FUNCTIONS)
                          and not argument.is_known), None)  # fmt: skip
         obstacle = "" if callback is None else _no_import(callback.text)
+        short = _short(named.get("cb") or named.get("callback"), made.cls.short)
         return Construction(
-            span=span, library=made.cls.name, short=_short(named.get("cb"), made.cls.short),
-            arguments=found, obstacle=obstacle, types=self._types(made), node="node" in named,
+            span=span, library=made.cls.name, short=short,
+            arguments=found, obstacle=obstacle, types=self._types(made), node=node,
         )  # fmt: skip
 
     def _of_class(
@@ -292,10 +335,7 @@ class _Reader:
     def _unknown_state(self, span: Span) -> Construction:
         """A state of a class that is not known: what its code shows of it."""
         text = self._text_of(span)
-        nodes = walk_code(text.tree) if text is not None else ()
-        add = next((node for node in nodes if isinstance(node, ast.Call) and text is not None
-                    and text.span(node) == span), None)  # fmt: skip
-        made = _argument_of(add, 1, "state") if add is not None else None
+        made = _object_at(text, span) if text is not None else None
         if not isinstance(made, ast.Call) or text is None:
             return Construction(span=span, obstacle="its class is not known")
         place = _imported(text.tree, made.func)
@@ -454,7 +494,7 @@ class _Reader:
 
     def _userdata(self, made: Instance, around: Instance | None) -> Iterator[Argument]:
         """The userdata that a container has before it starts."""
-        value = made.slots.get("userdata")
+        value = userdata_of(made)
         pairs = value.items if isinstance(value, DictValue) else {}
         place = made.span or self.graph.machine.root.span
         for key, part in pairs.values() if isinstance(pairs, Mapping) else ():
@@ -659,6 +699,18 @@ def _written(made: Instance) -> dict[int | str, ast.expr]:
     return found | {part.arg: part.value for part in node.keywords if part.arg is not None}
 
 
+def _object_at(text: PythonText, span: Span) -> ast.expr | None:
+    """The object of a state: in the call that adds it, or behind its name in a dictionary."""
+    for node in walk_code(text.tree):
+        if isinstance(node, ast.Call) and text.span(node) == span:
+            return _argument_of(node, 1, "state")
+        if isinstance(node, ast.Dict):
+            for key, value in zip(node.keys, node.values, strict=True):
+                if key is not None and text.span(key) == span:
+                    return value
+    return None
+
+
 def _argument_of(call: ast.Call, at: int, name: str) -> ast.expr | None:
     named = (part.value for part in call.keywords if part.arg == name)
     return call.args[at] if at < len(call.args) else next(named, None)
@@ -698,10 +750,14 @@ def _short(callback: Argument | None, cls: str) -> str:
     return "".join(part[:1].upper() + part[1:] for part in name.split("_")) or cls
 
 
-def _registered(made: Instance, span: Span) -> list[tuple[str, Span]]:
-    """The calls that register functions of a container."""
-    found = sequence(made.slots.get("$callbacks")) or ()
-    return [(str(part.value), part.span or span) for part in found if isinstance(part, Const)]
+def _call_code(call: Call) -> str | None:
+    """The code of a call with known arguments; None for another one."""
+    parts = [_literal_code(value) for value in call.arguments.positional]
+    named = [(name, _literal_code(value)) for name, value in call.arguments.named]
+    texts = [*parts, *(text and f"{name}={text}" for name, text in named)]
+    known = [text for text in texts if text is not None]
+    is_known = len(known) == len(texts) and not call.arguments.open
+    return f"{call.name}({', '.join(known)})" if is_known else None
 
 
 def _is_nothing(value: Value | None) -> bool:

@@ -4,9 +4,11 @@ classes have in common.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import NamedTuple
 
 from smachac.diagnostics.source import Span
+from smachac.pysource.life_cycle import LifeCycle
 from smachac.pysource.machines.heap import Added, Children
 from smachac.pysource.machines.values import (
     NONE,
@@ -21,11 +23,14 @@ from smachac.pysource.machines.values import (
     ListValue,
     TupleValue,
     UseFault,
+    UseKind,
     Value,
+    alternatives,
     sequence,
+    truth,
 )
 from smachac.pysource.machines.wrong_calls import Signature
-from smachac.records import dataclass, field
+from smachac.records import dataclass, field, replace
 
 Run = Callable[[Interpreter, Arguments, "Span | None"], Value]
 """A model of a function: what a call returns and changes."""
@@ -36,17 +41,30 @@ class Framework:
     """A framework for state machines.
 
     `packages` are its top packages, `modules` the names in its modules that the evaluator models, a
-    module that is not listed being the top package that it is in. `methods` are the methods of its
+    module that is not listed being the top package that it is in; `.name` is the module of a name
+    in any package. `methods` are the methods of its
     classes by full name (`smach.StateMachine`), `static` those that need no object, `parameters`
     the parameters of the constructors in their order, where an import needs them, `signatures` the
     parameters of methods by full name, of those that are the same in all versions. `containers` are
     the classes of containers; `adds` are the methods that add states, and a class that overrides
     one of `overridden` changes how they are added or run. `lacking` are modules that have none of
-    the names of another one, each with that one.
+    the names of another one, each with that one. `entries` are the methods of its classes that
+    return a machine which the framework runs. `life_cycle` are the methods of a state that it
+    calls.
 
-    `jumps`: an outcome without a transition leads to the state of this name, if there is one.
+    `same_name_exits`: an outcome without a transition ends the container if that has an outcome of
+    this name. `jumps`: it leads to the state of this name, if there is one. `exits` are the
+    outcomes that each container has: they need no transition, and end the containers around it too.
+    `undeclared_outcomes`: a transition for an outcome that the state does not declare is accepted,
+    and taken if the code returns it. `undeclared_keys`: a remapping of a key that the state does
+    not have is accepted, and has no effect.
     `effects` are the codes of the rules whose errors are faults in this framework too, each with
     the effect in its terms, or an empty text for that of the rule; None: all rules are about it.
+    With those in `works` a machine works all the same: only a check with all rules reports them.
+
+    For the import: `code` is the key of its classes in the `code` of interfaces, empty if no script
+    can have them. `parts` are classes that only work in another one, each with the reason.
+    `one_rule`: a concurrence of which two rules hold stops with an exception.
     """
 
     name: str
@@ -60,8 +78,18 @@ class Framework:
     parameters: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     lacking: Mapping[str, str] = field(default_factory=dict)
     signatures: Mapping[str, Signature] = field(default_factory=dict)
+    entries: frozenset[str] = frozenset()
+    life_cycle: LifeCycle = LifeCycle()
+    same_name_exits: bool = True
     jumps: bool = False
+    exits: tuple[str, ...] = ()
+    undeclared_outcomes: bool = False
+    undeclared_keys: bool = False
     effects: Mapping[str, str] | None = None
+    works: frozenset[str] = frozenset()
+    code: str = ""
+    parts: Mapping[str, str] = field(default_factory=dict)
+    one_rule: bool = False
 
 
 def classes(prefix: str, names: str) -> dict[str, Value]:
@@ -101,6 +129,8 @@ def set_interface(
             items = value.items
             value = TupleValue(items) if isinstance(items, tuple) else value
         evaluator.heap.set(me.slots, slot, value)
+    if "$noted" not in me.slots:  # so that a call under a condition is one of several possibilities
+        evaluator.heap.set(me.slots, "$noted", TupleValue(()))
 
 
 def make_container(evaluator: Interpreter, me: Instance, kind: str) -> None:
@@ -173,6 +203,71 @@ def executed(evaluator: Interpreter, arguments: Arguments, span: Span | None) ->
     return UNKNOWN
 
 
+MOST_NOTED = 100
+"""The most calls that are noted for an object. If there are more, none of them is certain."""
+
+
+class Call(NamedTuple):
+    """A call of a method of an object: its arguments are without the object. They are open if the
+    call is not certain."""
+
+    name: str
+    arguments: Arguments
+    span: Span | None
+
+
+def noted(name: str) -> Run:
+    """A method whose call has an effect that is no part of a graph."""
+
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        me = arguments.get(0, "self")
+        if isinstance(me, Instance):
+            given = Arguments(arguments.positional[1:], arguments.named, arguments.open)
+            calls = [*noted_of(me), Call(name, given, span)]
+            if len(calls) > MOST_NOTED:
+                known = (replace(call.arguments, open=True) for call in calls[:MOST_NOTED])
+                calls = [call._replace(arguments=given)
+                         for call, given in zip(calls, known, strict=False)]  # fmt: skip
+            evaluator.heap.set(me.slots, "$noted", TupleValue(tuple(map(_as_value, calls))))
+        return NONE
+
+    return run
+
+
+def noted_of(me: Instance) -> list[Call]:
+    """The calls that are noted for an object."""
+    held = [sequence(calls) or () for calls in alternatives(me.slots.get("$noted", TupleValue(())))]
+    if len(held) == 1:
+        return [*_calls(held[0], certain=True)]
+    return [*_calls(dict.fromkeys(call for calls in held for call in calls), certain=False)]
+
+
+def _as_value(call: Call) -> Value:
+    """A call as a value, which the store can join with others."""
+    name, arguments, span = call
+    words = TupleValue(tuple(Const(word) for word, _ in arguments.named))
+    values = TupleValue(tuple(value for _, value in arguments.named))
+    given = TupleValue(arguments.positional)
+    return TupleValue((Const(name, span), given, words, values, Const(arguments.open)))
+
+
+def _calls(values: Iterable[Value], *, certain: bool) -> Iterator[Call]:
+    for value in values:
+        match sequence(value):
+            case (Const(value=str() as name, span=span), given, words, held, is_open):
+                names = (str(getattr(word, "value", "")) for word in sequence(words) or ())
+                named = zip(names, sequence(held) or (), strict=True)
+                more = not certain or truth(is_open) is True
+                arguments = Arguments(sequence(given) or (), tuple(named), more)
+                yield Call(name, arguments, span)
+
+
+def userdata_of(container: Instance) -> Value | None:
+    """The values that the keys of a container have before it starts."""
+    found: Value | None = container.slots.get("$blackboard", container.slots.get("userdata"))
+    return found
+
+
 def listed(slot: str) -> Run:
     """A method that returns the names in a slot as a list."""
 
@@ -183,3 +278,11 @@ def listed(slot: str) -> Run:
         return UNKNOWN if items is None else evaluator.new_list(items)
 
     return run
+
+
+def refuse(evaluator: Interpreter, kind: UseKind, name: Const, span: Span) -> None:
+    """Notes that a framework refuses a call, at the name in it."""
+    own = name.span
+    is_inside = own is not None and own.source is span.source and span.start <= own.start < span.end
+    fault = UseFault(kind, own if own is not None and is_inside else span, (str(name.value),))
+    evaluator.faults.append(fault)

@@ -33,10 +33,10 @@ from smachac.ir.nodes import (
     StateType,
     Transition,
 )
-from smachac.ir.traversal import outer_inputs, outer_outputs
+from smachac.ir.traversal import outcome_names, outer_inputs, outer_outputs
 from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import Evaluator
-from smachac.pysource.machines.framework import Framework
+from smachac.pysource.machines.framework import Framework, userdata_of
 from smachac.pysource.machines.heap import Added, Children
 from smachac.pysource.machines.libraries import framework_of
 from smachac.pysource.machines.proven_reads import doubtful_in
@@ -133,6 +133,7 @@ class _Builder:
         self.states = 0
         self.nodes = 0
         self.path: list[Instance] = []
+        self.in_rules: list[Mapping[str, Sequence[str]]] = []
         self.names_above: list[str] = []
         self.objects: dict[tuple[str, ...], Instance] = {}
 
@@ -183,6 +184,7 @@ class _Builder:
         if inside:
             added = ()
         self.path.append(made)
+        self.in_rules.append(_outcomes_in_rules(made))
         self.names_above.append(name)
         self.objects[tuple(self.names_above)] = made
         node = self._built(made, name, span, depth, added, assumed, complete=complete)
@@ -191,6 +193,7 @@ class _Builder:
         if self.names(made.slots.get("$outputs"), span) is None:
             node = _with_outputs(node)
         self.names_above.pop()
+        self.in_rules.pop()
         self.path.pop()
         return node
 
@@ -206,10 +209,11 @@ class _Builder:
         if known is None:
             named = dict.fromkeys([*assumed, *_selected_outcomes(made)], span)
             known = [*{**named, **dict(builder.targets_outside())}.items()]
+        ends = builder.exits(built)
         common: dict[str, Any] = {
             "name": name,
             "type": kind,
-            "outcomes": tuple(Outcome(name=text, span=place) for text, place in known),
+            "outcomes": tuple(Outcome(name=text, span=place) for text, place in (*known, *ends)),
             "inputs": self.keys(made.slots.get("$inputs"), span, required=True),
             "outputs": self.keys(made.slots.get("$outputs"), span, required=True),
             "userdata": tuple(_presets(_userdata(made), span)),
@@ -253,13 +257,11 @@ class _Builder:
         builder: _Children, span: Span,
     ) -> Concurrence:  # fmt: skip
         rules: list[OutcomeRule] = []
-        mapping = made.slots.get("$outcome_map")
-        unknown = isinstance(mapping, Unknown | OneOf)
-        items = mapping.items if isinstance(mapping, DictValue) else {}
+        rules += _preemptions(built, self.framework(made))
+        pairs = _rules_of(made)
+        unknown = pairs is None
         known = {child.name for child in built}
-        if not isinstance(items, Mapping):
-            items, unknown = {}, True
-        for key, value in items.values():
+        for key, value in pairs or ():
             conditions = _conditions(value)
             name = _text(key)
             if name is None or conditions is None:
@@ -270,7 +272,7 @@ class _Builder:
                 place = _place(key, span)
                 rules.append(OutcomeRule(outcome=name, when=tuple(conditions), span=place))
         default = made.slots.get("$default_outcome")
-        join = self._join(made.slots.get("$child_termination_cb"))
+        join = self._join(made)
         outcomes: tuple[Outcome, ...] = common["outcomes"]
         decided: list[Leaf] = []
         if unknown or builder.incomplete:
@@ -304,8 +306,11 @@ class _Builder:
             outcomes = tuple(outcome for outcome in outcomes if outcome.name in names) or outcomes
         return _decider(f"{function.name}()", outcomes, span)
 
-    def _join(self, callback: Value | None) -> Literal["all", "any"]:
-        """Whether the first branch that ends stops the others."""
+    def _join(self, made: Instance) -> Literal["all", "any", "rule"]:
+        """Whether the first branch that ends stops the others, or the first rule that holds."""
+        if "$conditions" in made.slots:
+            return "rule"
+        callback = made.slots.get("$child_termination_cb")
         function = callback.function if isinstance(callback, Method) else callback
         if callback is None or _is_none(callback):
             return "all"
@@ -372,6 +377,11 @@ class _Builder:
             reason = self._missing(value, added) if value.opaque else f"its {what} are not known"
             return self.open_leaf(name, span, added, reason)
         facts = self._facts(value)
+        declared = dict(outcomes)
+        named = [name for name in _outcomes_of(added) if name not in declared]
+        if named and facts is not None and self.framework(value).undeclared_outcomes:
+            returned = {word.text for word in facts.returns}
+            outcomes = [*((name, span) for name in named if name in returned), *outcomes]
         required = sequence(value.slots.get("$required")) or ()
         names = {text for item in required if (text := _text(item)) is not None}
         if facts is not None:
@@ -448,12 +458,14 @@ class _Builder:
     def open_leaf(
         self, name: str, span: Span, added: Added, reason: str, facts: ClassFacts | None = None
     ) -> Leaf:
-        """A state of an unknown type: its outcomes are those of a comment, or of its
-        transitions."""
+        """A state of an unknown type: its outcomes are those of a comment, or of its transitions
+        and the rules of its concurrence."""
         note = self.reader.comments.at(span)
         if note.outcomes is None:
             self.unknown.append((span, reason))
-            outcomes = tuple(Outcome(name=text, span=span) for text in _outcomes_of(added))
+            in_rules = self.in_rules[-1].get(name, ()) if self.in_rules else ()
+            named = dict.fromkeys([*_outcomes_of(added), *in_rules])
+            outcomes = tuple(Outcome(name=text, span=span) for text in named)
         else:
             outcomes = tuple(Outcome(name=word.text, span=word.span) for word in note.outcomes)
         type_ = facts.name.text if facts is not None and facts.name is not None else ELSEWHERE
@@ -532,7 +544,7 @@ class _Children:
         self.made = made
         self.kind = kind
         self.outcomes = outcomes
-        self.jumps = builder.framework(made).jumps
+        self.framework = builder.framework(made)
         self.incomplete = not complete
         self.labels: set[str] = set()
         self.open_starts: frozenset[str] = frozenset()
@@ -567,7 +579,7 @@ class _Children:
             transitions: tuple[Transition, ...] = ()
             if self.kind in ("StateMachine", "Sequence"):
                 transitions = tuple(self._transitions(node, one, following))
-            found.append(_connected(node, transitions, tuple(self._remaps(one))))
+            found.append(_connected(node, transitions, tuple(self._remaps(node, one))))
         found += self.choices
         if self.incomplete and self.kind != "Iterator":
             names = {*(node.name for node in found), *(name for name, _ in self.outcomes or ())}
@@ -575,6 +587,16 @@ class _Children:
                 found = [_without_targets(node, names) for node in found]
             found.append(self._elsewhere(found))
         return tuple(found)
+
+    def exits(self, built: Sequence[Node]) -> Iterator[tuple[str, Span]]:
+        """The outcomes that each container has, as far as states lead to them."""
+        declared = {name for name, _ in self.outcomes or ()}
+        for name in self.framework.exits:
+            for node in built:
+                is_left = any(transition.target == name for transition in node.transitions)
+                if name not in declared and (is_left or name in outcome_names(node)):
+                    yield name, node.span
+                    break
 
     def targets_outside(self) -> list[tuple[str, Span]]:
         """The targets that are no states: outcomes of a container whose outcomes are not known."""
@@ -604,12 +626,13 @@ class _Children:
                                    target_span=span) for name in names)  # fmt: skip
             return
         done: set[str] = set()
+        is_spare = self.framework.undeclared_outcomes and items.keys() >= {*names}
         for key, value in items.values():
             outcome = _text(key)
             if outcome is None:
                 self.incomplete = True
                 continue
-            if _is_none(value) or _text(value) == "":
+            if _is_none(value) or _text(value) == "" or (is_spare and outcome not in names):
                 continue
             done.add(outcome)
             target = self._target(value, added, outcome)
@@ -622,9 +645,9 @@ class _Children:
         for name in names:
             if name in done:
                 continue
-            if name in ends:
+            if name in self.framework.exits or (name in ends and self.framework.same_name_exits):
                 yield Transition(outcome=name, target=name, origin="implicit", span=span)
-            elif self.jumps and name in self.labels:
+            elif self.framework.jumps and name in self.labels:
                 yield Transition(outcome=name, target=name, origin="connector", span=span)
             elif self.outcomes is None:
                 yield Transition(outcome=name, target=ELSEWHERE, span=span, target_span=span)
@@ -678,7 +701,7 @@ class _Children:
         starts = (name[:end] for end in range(len(name) + 1))
         return not name or known or self.open_starts.isdisjoint(starts)
 
-    def _remaps(self, added: Added) -> Iterator[Remap]:
+    def _remaps(self, node: Node, added: Added) -> Iterator[Remap]:
         given = added.remapping
         items = given.items if isinstance(given, DictValue) else {}
         if (given is not None and not isinstance(given, DictValue) and not _is_none(given)) or (
@@ -686,11 +709,12 @@ class _Children:
         ):
             self.incomplete = True
             return
+        is_spare = self.framework.undeclared_keys and not (isinstance(node, Leaf) and node.open)
         for key, value in items.values():
             name, other = _text(key), _text(value)
             if name is None or other is None:
                 self.incomplete = True
-            else:
+            elif not is_spare or name in {key.name for key in (*node.inputs, *node.outputs)}:
                 yield Remap(key=name, to=other, span=_place(key, added.span),
                             to_span=_place(value, added.span))  # fmt: skip
 
@@ -714,15 +738,48 @@ def _selected_outcomes(made: Instance) -> Iterator[str]:
     for slot in ("$default_outcome", "$exhausted_outcome", "$connector_outcome"):
         if (name := _text(made.slots.get(slot))) is not None:
             yield name
-    rules = made.slots.get("$outcome_map")
-    pairs = rules.items if isinstance(rules, DictValue) else {}
-    yield from map(str, pairs if isinstance(pairs, Mapping) else ())
+    for key, _ in _rules_of(made) or ():
+        if (name := _text(key)) is not None:
+            yield name
+
+
+def _preemptions(built: Sequence[Node], framework: Framework) -> Iterator[OutcomeRule]:
+    """The rules by which a branch that ends with an outcome of each container ends a concurrence
+    too."""
+    for child in built:
+        for name in framework.exits:
+            if name in outcome_names(child):
+                when = Condition(child=child.name, outcome=name, span=child.span)
+                yield OutcomeRule(outcome=name, when=(when,), span=child.span)
+
+
+def _rules_of(made: Instance) -> list[tuple[Value, Value]] | None:
+    """The rules of a concurrence, each with its outcome and its conditions; None: not known."""
+    if "$conditions" in made.slots:
+        given = made.slots["$conditions"]
+        return [] if _is_none(given) else _pairs(given)
+    mapping = made.slots.get("$outcome_map")
+    items = mapping.items if isinstance(mapping, DictValue) else {}
+    if isinstance(mapping, Unknown | OneOf) or not isinstance(items, Mapping):
+        return None
+    return [*items.values()]
 
 
 def _outcomes_of(added: Added) -> list[str]:
     """The outcomes that the transitions of a state name."""
     items = added.transitions.items if isinstance(added.transitions, DictValue) else {}
     return [str(key) for key in items] if isinstance(items, Mapping) else []
+
+
+def _outcomes_in_rules(made: Instance) -> dict[str, list[str]]:
+    """The outcomes that the rules of a concurrence name, by state."""
+    found: dict[str, list[str]] = {}
+    mapping = made.slots.get("$outcome_map")
+    items = mapping.items if isinstance(mapping, DictValue) else {}
+    for _, value in items.values() if isinstance(items, Mapping) else ():
+        for one in _conditions(value) or ():
+            found.setdefault(one.child, []).append(one.outcome)
+    return found
 
 
 def _one_for_each_name(added: Sequence[Added]) -> list[Added]:
@@ -844,10 +901,11 @@ def _optional(key: Key) -> Key:
 def _conditions(value: Value) -> list[Condition] | None:
     """The conditions of a rule of an outcome map; None: not known."""
     items = value.items if isinstance(value, DictValue) else None
-    if not isinstance(items, Mapping):
+    pairs = [*items.values()] if isinstance(items, Mapping) else _pairs(value)
+    if pairs is None:
         return None
     found: list[Condition] = []
-    for key, part in items.values():
+    for key, part in pairs:
         child, outcome = _text(key), _text(part)
         if child is None or outcome is None:
             return None
@@ -856,11 +914,22 @@ def _conditions(value: Value) -> list[Condition] | None:
     return found
 
 
+def _pairs(value: Value) -> list[tuple[Value, Value]] | None:
+    """The items of a list of pairs; None: not known."""
+    items = sequence(value)
+    if items and isinstance(value, DictValue):
+        return None
+    pairs = [sequence(item) for item in items or ()]
+    if items is None or any(pair is None or len(pair) != 2 for pair in pairs):
+        return None
+    return [(pair[0], pair[1]) for pair in pairs if pair is not None]
+
+
 def _userdata(made: Instance) -> Mapping[Any, tuple[Value, Value]] | None:
     """The keys that the userdata of a container has: those of each, if an unknown condition selects
     how the container is made. None: not known."""
     found: dict[Any, tuple[Value, Value]] = {}
-    for part in alternatives(made.slots.get("userdata", UNKNOWN)):
+    for part in alternatives(userdata_of(made) or UNKNOWN):
         items = part.items if isinstance(part, DictValue) else None
         if not isinstance(items, Mapping):
             return None

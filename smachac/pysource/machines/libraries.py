@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from smachac.pysource.machines import python_library
+from smachac.pysource.machines import python_library, yasmin_runtime
 from smachac.pysource.machines.builtins import MAKERS
+from smachac.pysource.machines.flexbe_library import FLEXBE
 from smachac.pysource.machines.framework import Framework
 from smachac.pysource.machines.smach_library import SMACH
 from smachac.pysource.machines.values import (
@@ -23,7 +24,7 @@ from smachac.pysource.machines.values import (
 from smachac.pysource.machines.wrong_calls import Signature
 from smachac.pysource.machines.yasmin_library import YASMIN
 
-FRAMEWORKS: tuple[Framework, ...] = (SMACH, YASMIN)
+FRAMEWORKS: tuple[Framework, ...] = (SMACH, YASMIN, FLEXBE)
 """The frameworks whose machines are read."""
 
 _OF_PACKAGE = {package: framework for framework in FRAMEWORKS for package in framework.packages}
@@ -86,12 +87,16 @@ def library_module(known: dict[str, ModuleValue], name: str) -> Value | None:
                  for name, names in framework.modules.items()}  # fmt: skip
         for module, names in (*every.items(), *python_library.MODULES.items()):
             known[module] = ModuleValue(module, {**names})
+    if name.rpartition(".")[2] == yasmin_runtime.NAME:  # it lies beside the programs
+        name = yasmin_runtime.NAME
     if name in known:
         return known[name]
     if name in python_library.UNREAD:
         return Unknown(reason=name)
-    head = name.partition(".")[0]
-    return known.get(head) if head in _OF_PACKAGE and name.count(".") == 1 else None
+    top, dot, _ = name.partition(".")
+    if top in _OF_PACKAGE:
+        return known.get(top)
+    return known.get(f".{name.rpartition('.')[2]}") if dot else None
 
 
 def misplaced(module: str, name: str) -> tuple[Value, str]:

@@ -10,15 +10,22 @@ from typing import TypeVar
 from smachac.diagnostics.source import Span
 from smachac.pysource.machines.evaluator import BudgetError, Evaluator
 from smachac.pysource.machines.heap import Added, Children
-from smachac.pysource.machines.libraries import FRAMEWORKS, is_container, is_container_class
+from smachac.pysource.machines.libraries import (
+    FRAMEWORKS,
+    framework_of,
+    is_container,
+    is_container_class,
+)
 from smachac.pysource.machines.project import Repository
 from smachac.pysource.machines.values import (
     UNKNOWN,
     Arguments,
     Class,
+    Const,
     Frame,
     Function,
     Instance,
+    LibraryClass,
     ModuleValue,
     OpenText,
     Value,
@@ -203,9 +210,18 @@ def _of_class(
         for method in methods:
             if unknown or method.node not in evaluator.called:
                 given = _unknown(method, variants=unknown, once=False)
-                evaluator.run(method, given.without_first().with_first(made))
+                result = evaluator.run(method, given.without_first().with_first(made))
+                if method.name in framework_of(order).entries and is_container(result):
+                    _run_by_framework(evaluator, result, cls)
 
     yield build
+
+
+def _run_by_framework(evaluator: Evaluator, machine: Value, cls: Class) -> None:
+    """Notes that a framework runs a machine, and that it has the name of the class."""
+    if isinstance(machine, Instance):
+        evaluator.heap.set(machine.slots, "$executed", Const(True))
+        evaluator.heap.set(machine.slots, "$name", Const(cls.name))
 
 
 def _place(module: ModuleValue, cls: Class) -> Span | None:
@@ -234,6 +250,8 @@ def _builds(node: ast.AST, module: ModuleValue) -> bool:
         if name in _WORDS:
             return True
         value = module.slots.get(name) if isinstance(part, ast.Name) else None
+        if isinstance(value, LibraryClass) and is_container_class(value):
+            return True
         if isinstance(value, Class) and any(map(is_container_class, value.order)):
             return True
     return False

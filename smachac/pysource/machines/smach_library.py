@@ -18,6 +18,7 @@ from smachac.pysource.machines.framework import (
     listed,
     make_container,
     names_in,
+    noted,
     nothing,
     set_interface,
     together,
@@ -322,18 +323,6 @@ CALLBACKS = ("register_start_cb", "register_transition_cb", "register_terminatio
 """The methods of a container that register functions which it calls while it runs."""
 
 
-def _called_later(name: str) -> Run:
-    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-        me = arguments.get(0, "self")
-        if isinstance(me, Instance):
-            before = me.slots.get("$callbacks", TupleValue(()))
-            known = before.items if isinstance(before, TupleValue) else ()
-            evaluator.heap.set(me.slots, "$callbacks", TupleValue((*known, Const(name, span))))
-        return NONE
-
-    return run
-
-
 _STATE: Mapping[str, Run] = {
     "__init__": _state,
     "execute": executed,
@@ -366,7 +355,7 @@ def _close(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> V
 
 _CONTAINER: Mapping[str, Run] = {
     **_STATE,
-    **{name: _called_later(name) for name in CALLBACKS},
+    **{name: noted(name) for name in CALLBACKS},
     "open": _open,
     "close": _close,
     "set_initial_state": _set_initial,
@@ -495,5 +484,6 @@ SMACH = Framework(
     overridden=frozenset(["add", "execute"]),
     lacking={"smach": "smach_ros", "smach_ros": "smach"},
     parameters={**_PARAMETERS, **_OTHER_PARAMETERS},
+    code="python",
     signatures=_SIGNATURES,
 )  # fmt: skip

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from smachac.diagnostics.source import Span
+from smachac.pysource.machines import yasmin_runtime
 from smachac.pysource.machines.framework import (
     Framework,
     Run,
@@ -19,7 +20,9 @@ from smachac.pysource.machines.framework import (
     listed,
     make_container,
     names_in,
+    noted,
     nothing,
+    refuse,
     set_interface,
     together,
 )
@@ -34,8 +37,6 @@ from smachac.pysource.machines.values import (
     Interpreter,
     Native,
     TupleValue,
-    UseFault,
-    UseKind,
     Value,
     sequence,
 )
@@ -61,6 +62,26 @@ _READY: Mapping[str, tuple[int, tuple[str, ...], tuple[str, ...]]] = {
 }
 """The states of yasmin_ros: the place of the argument `outcomes` (0: they have none), the outcomes
 that each has besides, and those that it can have."""
+
+
+_PARAMETERS = {
+    name: tuple(words.split())
+    for name, words in {
+        "yasmin.State": "outcomes",
+        "yasmin.CbState": "outcomes callback",
+        "yasmin_ros.ActionState": "action_type action_name create_goal_handler outcomes"
+        " result_handler feedback_handler callback_group node wait_timeout response_timeout"
+        " maximum_retry",
+        "yasmin_ros.ServiceState": "srv_type srv_name create_request_handler outcomes"
+        " response_handler callback_group node wait_timeout response_timeout maximum_retry",
+        "yasmin_ros.MonitorState": "msg_type topic_name outcomes monitor_handler qos"
+        " callback_group msg_queue node timeout maximum_retry",
+        "yasmin_ros.PublisherState": "msg_type topic_name create_message_handler qos"
+        " callback_group node",
+        "yasmin_ros.GetParametersState": "parameters node",
+    }.items()
+}
+"""The parameters of the constructors in YASMIN 6.1."""
 
 
 def _names(texts: tuple[str, ...]) -> Value:
@@ -140,6 +161,7 @@ def _concurrence(at: int) -> Run:
         make_container(evaluator, me, "Concurrence")
         evaluator.heap.set(me.slots, "$default_outcome", default)
         evaluator.heap.set(me.slots, "$outcome_map", rules)
+        _note_mappings(evaluator, arguments, at + 2, span)
         if at > 1:
             _add_states(evaluator, me, arguments.get(1, "states", UNKNOWN), span or me.span)
         return NONE
@@ -164,6 +186,14 @@ def _add_states(
         add_child(evaluator, me, added)
 
 
+def _note_mappings(
+    evaluator: Interpreter, arguments: Arguments, at: int, span: Span | None
+) -> None:
+    """Notes the argument with mappings of parameters, if there is one."""
+    if arguments.get(at, "parameter_mappings") is not None:
+        noted("set_parameter_mappings")(evaluator, arguments, span)
+
+
 def _add(kind: str) -> Run:
     """A method that adds a state: its name, the state, and for a state machine the transitions."""
 
@@ -178,9 +208,11 @@ def _add(kind: str) -> Run:
         added = Added(label=name, state=state, transitions=copied(transitions),
                       remapping=copied(remapping), span=span, kind=kind)  # fmt: skip
         add_child(evaluator, me, added)
+        if kind == "add":
+            _note_mappings(evaluator, arguments, 5, span)
         outcomes = sequence(me.slots.get("$outcomes")) or ()
         if kind == "add" and isinstance(name, Const) and name in outcomes:
-            _refuse(evaluator, "state named as outcome", name, span)
+            refuse(evaluator, "state named as outcome", name, span)
         return NONE
 
     return run
@@ -197,35 +229,77 @@ def _set_start(evaluator: Interpreter, arguments: Arguments, span: Span | None) 
         known = [child.label for child in children.added]
         is_whole = children.complete and all(isinstance(label, Const) for label in known)
         if is_whole and name not in known:
-            _refuse(evaluator, "no such start state", name, span)
+            refuse(evaluator, "no such start state", name, span)
     return NONE
 
 
-def _refuse(evaluator: Interpreter, kind: UseKind, name: Const, span: Span) -> None:
-    """Notes that YASMIN refuses a call, at the name in it."""
-    own = name.span
-    is_inside = own is not None and own.source is span.source and span.start <= own.start < span.end
-    fault = UseFault(kind, own if own is not None and is_inside else span, (str(name.value),))
-    evaluator.faults.append(fault)
+def _blackboard(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    """A blackboard: a dictionary; a copy of another one has the same values."""
+    other = arguments.get(0, "other")
+    return DictValue({"items": {}}, span) if other is None else other
 
+
+def _run(*, injects: bool) -> Run:
+    """A method that runs a state. The userdata of a machine is what its blackboard holds then, with
+    the default values of its keys if it `injects` them."""
+
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        me, blackboard = arguments.get(0, "self"), arguments.get(1, "blackboard", NONE)
+        if isinstance(me, Instance) and "$children" in me.slots:
+            values = blackboard.items if isinstance(blackboard, DictValue) else {}
+            defaults = me.slots.get("$defaults") if injects else None
+            more = defaults.items if isinstance(defaults, DictValue) else {}
+            is_other = blackboard != NONE and not isinstance(blackboard, DictValue)
+            again = bool(values) and "$executed" in me.slots
+            if is_other or again or not (isinstance(values, Mapping) and isinstance(more, Mapping)):
+                noted(BLACKBOARD)(evaluator, arguments, span)
+            elif values or more:
+                whole = DictValue({"items": {**more, **values}})
+                evaluator.heap.set(me.slots, "$blackboard", whole)
+        if isinstance(blackboard, DictValue):  # the states have changed it
+            evaluator.heap.set(blackboard.slots, "items", UNKNOWN)
+        return executed(evaluator, Arguments((me,) if me is not None else ()), span)
+
+    return run
+
+
+def _add_input_key(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    """`add_input_key`, which describes a key, and can give it a default value."""
+    me, key = arguments.get(0, "self"), arguments.get(1, "key_name", UNKNOWN)
+    default = arguments.get(3, "default_value")
+    if not isinstance(me, Instance) or default is None:
+        return NONE
+    if "$children" not in me.slots or not isinstance(key, Const):
+        return noted("add_input_key")(evaluator, arguments, span)
+    known = me.slots.get("$defaults")
+    pairs = known.items if isinstance(known, DictValue) else {}
+    items = {**pairs, key.value: (key, default)} if isinstance(pairs, Mapping) else UNKNOWN
+    evaluator.heap.set(me.slots, "$defaults", DictValue({"items": items}, span))
+    return NONE
+
+
+BLACKBOARD = "Blackboard"
+"""The name under which a blackboard is noted of which the values are not known."""
 
 _STATE: Mapping[str, Run] = {
     "__init__": _state,
-    "__call__": executed,
-    "execute": executed,
+    "__call__": _run(injects=True),
+    "execute": _run(injects=False),
     "get_outcomes": listed("$outcomes"),
+    "add_input_key": _add_input_key,
+    **{name: noted(name) for name in ("declare_parameter", "set_parameter")},
     **dict.fromkeys(
         ("configure", "cancel_state", "set_description", "set_outcome_description",
-         "add_input_key", "add_output_key", "declare_parameter", "set_parameter"), nothing,
+         "add_output_key"), nothing,
     ),
 }  # fmt: skip
 
 _CONTAINER: Mapping[str, Run] = {
     **_STATE,
-    **dict.fromkeys(
-        ("validate", "set_name", "add_start_cb", "add_transition_cb", "add_end_cb",
-         "set_parameter_mappings", "set_sigint_handler", "cancel_state_machine"), nothing,
-    ),
+    **{name: noted(name) for name in
+       ("add_start_cb", "add_transition_cb", "add_end_cb", "set_parameter_mappings")},
+    **dict.fromkeys(("validate", "set_name", "set_sigint_handler", "cancel_state_machine"),
+                    nothing),
 }  # fmt: skip
 
 _LOGS = (
@@ -240,11 +314,11 @@ def _unknown(evaluator: Interpreter, arguments: Arguments, span: Span | None) ->
 
 YASMIN = Framework(
     name="YASMIN",
-    packages=("yasmin", "yasmin_ros", "yasmin_viewer"),
+    packages=("yasmin", "yasmin_ros", "yasmin_viewer", yasmin_runtime.NAME),
     modules={
         "yasmin": {
             **classes("yasmin", "State CbState StateMachine Concurrence OrthogonalState JoinState"),
-            "Blackboard": Native("Blackboard", _unknown),
+            "Blackboard": Native("Blackboard", _blackboard),
             **dict.fromkeys(_LOGS.split(), Native("nothing", nothing)),
         },
         "yasmin_ros": {
@@ -253,6 +327,7 @@ YASMIN = Framework(
         },
         "yasmin_ros.basic_outcomes": {name: Const(text) for name, text in OUTCOMES.items()},
         "yasmin_viewer": {"YasminViewerPub": Native("YasminViewerPub", _unknown)},
+        yasmin_runtime.NAME: yasmin_runtime.MODULE,
     },
     methods={
         "yasmin.State": _STATE,
@@ -272,16 +347,23 @@ YASMIN = Framework(
         },
         **{f"yasmin_ros.{name}": {**_STATE, "__init__": _ready(*what)}
            for name, what in _READY.items()},
+        **yasmin_runtime.METHODS,
     },
-    containers=frozenset(["yasmin.StateMachine", "yasmin.Concurrence", "yasmin.OrthogonalState"]),
+    containers=yasmin_runtime.CONTAINERS.union(
+        ["yasmin.StateMachine", "yasmin.Concurrence", "yasmin.OrthogonalState"]
+    ),
     adds=frozenset(["add_state", "add_region"]),
     overridden=frozenset(["add_state", "add_region", "execute"]),
+    parameters=_PARAMETERS,
     signatures={
         "yasmin.StateMachine.add_state": signature(
             "self name state", "transitions remappings parameter_mappings"
         ),
     },
     jumps=True,
+    code="yasmin",
+    parts={"yasmin.JoinState": "it waits for another region of an orthogonal state"},
+    one_rule=True,
     effects={
         "SM101": "YASMIN raises an exception when the machine starts: none of its states runs",
         "SM102": "`add_state` raises an exception for such a transition: the program stops",
@@ -292,4 +374,5 @@ YASMIN = Framework(
         "SM309": "YASMIN raises an exception after `execute`: the machine stops",
         "SM403": "YASMIN raises an exception when it makes the concurrence: the program stops",
     },
+    works=frozenset(["SM202"]),  # an endless loop can be wanted
 )  # fmt: skip

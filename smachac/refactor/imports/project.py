@@ -41,8 +41,8 @@ class Proof:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Incomplete:
-    """A machine that cannot be imported, as parts of it are not known, or as it is in Python for a
-    framework whose machines are not imported."""
+    """A machine that cannot be imported, as parts of it are not known, or as no script can have
+    what `framework` has at these places."""
 
     name: str
     unknown: tuple[tuple[Span, str], ...]

@@ -13,9 +13,9 @@ from smachac.frontend.files import Disk, lies_inside
 from smachac.ir.nodes import Leaf, Node
 from smachac.ir.traversal import walk
 from smachac.pysource.coverage import unknown_states
+from smachac.pysource.machines.constructions import Constructions
 from smachac.pysource.machines.graph import ELSEWHERE, Graph
 from smachac.pysource.machines.project import module_text
-from smachac.pysource.machines.smach_library import SMACH
 from smachac.pysource.python2 import looks_like_python2
 from smachac.refactor.imports.project import (
     Imported,
@@ -78,10 +78,10 @@ def _machines(built: Sequence[Built]) -> tuple[list[PythonMachine], list[Incompl
         root = graph.machine.root
         label = _free(root.name, labels)
         labels.add(label.casefold())
-        if graph.framework is not SMACH:
-            place = (root.span, f"this is a machine for {graph.framework.name}")
-            other = Incomplete(name=label, unknown=(place,), framework=graph.framework.name)
-            incomplete.append(other)
+        refusals = _refusals(graph, constructions)
+        if refusals:
+            name = graph.framework.name
+            incomplete.append(Incomplete(name=label, unknown=refusals, framework=name))
             continue
         if not _is_known(graph):
             incomplete.append(Incomplete(name=label, unknown=_unknown(graph)))
@@ -92,6 +92,15 @@ def _machines(built: Sequence[Built]) -> tuple[list[PythonMachine], list[Incompl
             PythonMachine(name=name, label=label, root=root, constructions=constructions)
         )
     return machines, incomplete
+
+
+def _refusals(graph: Graph, constructions: Constructions) -> tuple[tuple[Span, str], ...]:
+    """The places of what no script can have, each with the reason."""
+    if not graph.framework.code:
+        return ((graph.machine.root.span, f"machines for {graph.framework.name} are not imported"),)
+    found = {(made.span, f"`{names[-1]}`: {made.refusal}"): None
+             for names, made in constructions.states.items() if made.refusal}  # fmt: skip
+    return tuple(found)
 
 
 def _free(word: str, taken: Collection[str]) -> str:

@@ -3,6 +3,7 @@ container class, an interface for each state type."""
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -16,6 +17,7 @@ from smachac.ir.nodes import (
     Key,
     Leaf,
     Node,
+    OutcomeRule,
     StateMachine,
 )
 from smachac.ir.nodes import Sequence as SequenceNode
@@ -28,6 +30,7 @@ from smachac.pysource.machines.constructions import (
     Names,
     Outcomes,
 )
+from smachac.pysource.machines.yasmin_library import BLACKBOARD
 from smachac.records import dataclass, field
 from smachac.refactor.imports.state_types import (
     OWN_MODULE,
@@ -45,6 +48,22 @@ from smachac.refactor.imports.yaml_text import (
 
 BASE = "ImportedBase"
 """The base of programs whose code names what the modules of the user contain."""
+
+
+_NOTED = {
+    "set_parameter": ("the call of `set_parameter`", "call it in the constructor of the class"),
+    "declare_parameter": (
+        "the call of `declare_parameter`", "call it in the constructor of the class"
+    ),
+    "set_parameter_mappings": (
+        "the call of `set_parameter_mappings`", "pass the values to the constructors of the states"
+    ),
+    "add_input_key": (
+        "the default value of a key", "write it in `userdata`, or in the constructor of the class"
+    ),
+    BLACKBOARD: ("the values of the blackboard", "write them in `userdata` of the script"),
+}  # fmt: skip
+"""What is not taken over of calls that do not register functions, and what to do, by name."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -187,8 +206,8 @@ class _Writer:
     def add(self, machine: PythonMachine, stem: str) -> None:
         self.machine = machine
         self.made.modules |= machine.constructions.modules
-        for name, span in machine.constructions.registered:
-            self.lose(span, f"the function of `{name}`", "call it in a state")
+        for name, span in machine.constructions.noted:
+            self.lose(span, *_NOTED.get(name, (f"the function of `{name}`", "call it in a state")))
         for first, second, span in machine.constructions.shared:
             text = f"`{second[-1]}` and `{first[-1]}` are one object, and two in a program"
             self.lose(span, text, "keep what they share in userdata")
@@ -313,10 +332,16 @@ class _Writer:
         return f"{{value: {text}}}" if text.startswith("{") else text
 
     def concurrence_fields(self, names: Names, node: Concurrence) -> dict[str, str]:
-        callbacks = self.machine.constructions.callbacks.get(names, Callbacks())
+        constructions = self.machine.constructions
+        callbacks = constructions.callbacks.get(names, Callbacks())
         for name, span in callbacks.lost:
             self.lose(span, f"`{name}` of `{node.name}`: its results are not known",
                       "write its rules in `outcome_map`, or `join`")  # fmt: skip
+        if constructions.one_rule and (pair := _both_hold(node)) is not None:
+            names_ = " and ".join(f"`{rule.outcome}`" for rule in pair)
+            self.lose(pair[0].span, f"the rules of {names_} of `{node.name}` can both hold: then"
+                      " YASMIN stops with an exception, and a script selects one of them",
+                      "write rules of which one holds")  # fmt: skip
         fields = {}
         default = node.default_outcome
         rules = [(rule.outcome, [(part.child, part.outcome) for part in rule.when])
@@ -381,6 +406,20 @@ def _connections(node: Node, parent: Container) -> dict[str, str]:
     if steps:
         fields["transitions"] = mapping_text(steps)
     return fields
+
+
+MOST_RULES = 100
+"""The most rules of a concurrence that are compared with each other."""
+
+
+def _both_hold(node: Concurrence) -> tuple[OutcomeRule, OutcomeRule] | None:
+    """Two rules with different outcomes of a concurrence that can hold at once."""
+    for one, other in itertools.combinations(node.rules[:MOST_RULES], 2):
+        ended = {part.child: part.outcome for part in one.when}
+        agree = all(ended.get(part.child, part.outcome) == part.outcome for part in other.when)
+        if one.outcome != other.outcome and agree:
+            return one, other
+    return None
 
 
 Rules = list[tuple[str, list[tuple[str, str]]]]

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from smachac.diagnostics.source import Span
 from smachac.frontend import schema
+from smachac.frontend.text.unquoted import is_name
 from smachac.ir.nodes import Expression, Key, Leaf
 from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type
@@ -57,6 +58,13 @@ OUTCOMES = {
 
 _USABLE = frozenset(["robot", "timeout", "retry", "for_each"])
 """Fields whose names a state type can give to its variables."""
+
+_LANGUAGES = {
+    "python": ("smach.State", "userdata"),
+    "yasmin": ("yasmin.State", "blackboard"),
+}
+"""The base class of the classes that an import writes, and the argument of their `execute`, by the
+key of the `code` of interfaces."""
 
 RESERVED = frozenset({*schema.VARIABLES, *schema.LONG, "callbacks", "cb"}) - _USABLE
 """Words that no variable of a state type has as its name: fields of scripts."""
@@ -136,7 +144,8 @@ class StateTypes:
         fixed, variables, passed = _split(construction, leaf, wrapped=wrapped)
         obstacle = construction.obstacle
         which = (
-            construction.cls, construction.library, construction.file, fixed,
+            construction.cls, construction.library, construction.file, construction.code, fixed,
+            construction.calls,
             tuple(passed) if wrapped else (),
             obstacle and construction.short, obstacle, leaf.open, outcome_names(leaf),
             tuple((key.name, is_optional(key)) for key in leaf.inputs),
@@ -159,7 +168,7 @@ class StateTypes:
 
     def _name(self, word: str) -> str:
         base = re.sub(r"\W+", "_", word).strip("_")
-        base = base if base.isidentifier() else f"State_{base}".rstrip("_")
+        base = base if is_name(base) else f"State_{base}".rstrip("_")
         name, number = base, 2
         while name.casefold() in self.taken:
             name, number = f"{base}_{number}", number + 1
@@ -177,10 +186,10 @@ class StateTypes:
 
 def _is_wrapped(construction: Construction) -> bool:
     """Whether the import writes a class for a state: there is none to name, an argument has only a
-    place, or a parameter is a word that a script has for itself."""
+    place, a parameter is a word that a script has for itself, or calls follow the constructor."""
     return (
         construction.cls is None
-        or bool(construction.obstacle)
+        or bool(construction.obstacle or construction.calls)
         or any(argument.name in {"", *RESERVED} for argument in construction.arguments)
     )
 
@@ -198,15 +207,19 @@ def _split(
     passed: dict[str, str] = {}
     for at, argument in enumerate(construction.arguments, 1):
         name = argument.name
-        if construction.library and name in _INTERFACE:
+        is_smach = construction.code == "python"
+        if construction.library and name in _INTERFACE and is_smach:
             continue
         if wrapped and name and isinstance(argument.data, Expression):
             fixed.append(f"{name}={argument.data.text}")
             continue
+        if construction.library and name in _INTERFACE and isinstance(argument.data, tuple):
+            fixed.append(f"{name}={[*argument.data]!r}")
+            continue
         variable = _variable(name) if name else f"argument_{at}"
         variables[variable] = argument
         passed[variable] = name
-    if construction.library:
+    if construction.library and construction.code == "python":
         fixed.append(f"outcomes={[*outcome_names(leaf)]!r}")
         fixed += [f"{name}={[key.name for key in keys]!r}" for name, keys in
                   (("input_keys", leaf.inputs), ("output_keys", leaf.outputs)) if keys]  # fmt: skip
@@ -216,7 +229,7 @@ def _split(
 def _variable(parameter: str) -> str:
     """The variable for a parameter, which has no name of a field."""
     name = re.sub(r"\W+", "_", parameter)
-    return f"{name}_argument" if name in RESERVED or not name.isidentifier() else name
+    return f"{name}_argument" if name in RESERVED or not is_name(name) else name
 
 
 def _interface(made: ImportedType) -> str:
@@ -234,10 +247,11 @@ def _interface(made: ImportedType) -> str:
     for word, keys in (("input_keys", leaf.inputs), ("output_keys", leaf.outputs)):
         if keys:
             lines.append(f"{word}: {keys_text(keys)}")
-        elif leaf.open:
+        elif leaf.open or made.construction.code == "yasmin":  # one blackboard has all keys
             lines.append(f'{word}: {{"*": {{}}}}')
     lines.append(f"outcomes: {mapping_text(dict.fromkeys(outcome_names(leaf), '{}'))}")
-    lines.append(f"code: {{python: {quoted(made.code or f'{OWN_MODULE}:{made.name}')}}}")
+    code = made.code or f"{OWN_MODULE}:{made.name}"
+    lines.append(f"code: {{{made.construction.code}: {quoted(code)}}}")
     return "\n".join(lines) + "\n"
 
 
@@ -252,6 +266,9 @@ def _module(types: Iterable[ImportedType]) -> str:
                       if made.construction.cls is not None and not made.construction.obstacle}
                      | _modules_in(types))  # fmt: skip
     lines = ['"""Classes for the states of the scripts in this folder."""']
+    plain = [name for name in ("yasmin", "yasmin_ros") if f"({name}." in text]
+    if plain:
+        lines += ["", *(f"import {name}" for name in plain)]
     if libraries:
         lines += [
             "", "try:", *(f"    import {name}" for name in libraries),
@@ -270,7 +287,7 @@ def _modules_in(types: Iterable[ImportedType]) -> set[str]:
 
 
 def _wrapper(made: ImportedType) -> list[str]:
-    """A class that passes arguments to that of the user or of SMACH."""
+    """A class that passes arguments to that of the user or of the framework."""
     cls = made.construction.cls
     base = f"{cls.module}.{cls.name}" if cls is not None else made.construction.library
     given = [f"{name}={variable}" if name else variable for variable, name in made.passed.items()]
@@ -278,10 +295,11 @@ def _wrapper(made: ImportedType) -> list[str]:
     parameters = "".join(f", {name}" for name in made.passed)
     lines = [f"class {made.name}({base}):", f'    """{made.place}"""', "",
              f"    def __init__(self{parameters}):"]  # fmt: skip
+    calls = [f"        self.{call}" for call in made.construction.calls]
     if sum(map(len, given)) < 60:
-        return [*lines, f"        super().__init__({', '.join(given)})"]
+        return [*lines, f"        super().__init__({', '.join(given)})", *calls]
     return [*lines, "        super().__init__(", *(f"            {part}," for part in given),
-            "        )"]  # fmt: skip
+            "        )", *calls]  # fmt: skip
 
 
 def _stub(made: ImportedType) -> list[str]:
@@ -297,11 +315,12 @@ def _stub(made: ImportedType) -> list[str]:
     parameters = "".join(f", {name}" if count == made.states else f", {name}=None"
                          for name, count in counts)  # fmt: skip
     why = re.sub(r'[\\"]', "'", f"{made.place}: {made.construction.obstacle}.")
+    base, argument = _LANGUAGES[made.construction.code]
     return [
-        f"class {made.name}(smach.State):", f'    """{why}"""', "",
+        f"class {made.name}({base}):", f'    """{why}"""', "",
         f"    def __init__(self{parameters}):", "        super().__init__(", *given, "        )",
         *(f"        self.{name} = {name}" for name in made.variables), "",
-        "    def execute(self, userdata):",
+        f"    def execute(self, {argument}):",
         f"        raise NotImplementedError({made.place!r})",
     ]  # fmt: skip
 

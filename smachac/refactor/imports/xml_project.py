@@ -73,7 +73,7 @@ def _machine(machine: XmlMachine) -> PythonMachine:
     root = machine.root
     name = re.sub(r"\W+", "_", root.name).strip("_") or "sm"
     made = Constructions(states=machine.states, userdata=machine.userdata, items={}, callbacks={},
-                         registered=(), shared=(), modules={})  # fmt: skip
+                         noted=(), shared=(), modules={}, one_rule=machine.one_rule)  # fmt: skip
     return PythonMachine(name=name, label=root.name, root=root, constructions=made)
 
 

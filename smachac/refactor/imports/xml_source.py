@@ -26,9 +26,10 @@ Loader: TypeAlias = "Callable[[str, str], tuple[Source, Element] | None]"
 @dataclass(slots=True, kw_only=True)
 class XmlMachine:
     """A machine that was read: how its states are made and the values of its userdata, by the path
-    of names, and what was not taken over."""
+    of names, and what was not taken over. `one_rule`: see Constructions."""
 
     root: StateMachine
+    one_rule: bool = False
     states: dict[Names, Construction] = field(default_factory=dict)
     userdata: dict[Names, tuple[Argument, ...]] = field(default_factory=dict)
     lost: list[Lost] = field(default_factory=list)

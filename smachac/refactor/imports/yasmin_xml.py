@@ -1,8 +1,8 @@
 """The XML of YASMIN (its factory and editor): state machines, concurrences, states in other code.
 
 A state ends with the outcomes that its transitions name: the file declares no others. It reads and
-writes any key of the one blackboard. The code of a state stays where it is; it is for YASMIN, so
-the script has a class for it whose `execute` is to be written.
+writes any key of the one blackboard. A class of Python stays where it is, and the script names it;
+for a state in C++ the script has a class whose `execute` is to be written.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from collections.abc import Container, Iterable, Mapping
 from typing import TypeAlias
 
 from smachac.diagnostics.source import Source, Span
+from smachac.frontend.text.unquoted import is_name
 from smachac.ir.nodes import (
     Concurrence,
     Condition,
@@ -27,7 +28,12 @@ from smachac.ir.nodes import (
     Transition,
     Value,
 )
-from smachac.pysource.machines.constructions import Argument, Construction, Names
+from smachac.pysource.machines.constructions import (
+    Argument,
+    ClassPlace,
+    Construction,
+    Names,
+)
 from smachac.records import replace
 from smachac.refactor.imports.xml_source import (
     Edges,
@@ -41,6 +47,7 @@ from smachac.refactor.imports.xml_source import (
     type_name,
 )
 from smachac.robots.xml_tree import Element, FormatHelp
+from smachac.targets.python.formatter import flat, literal
 
 ROOT = "StateMachine"
 FORMAT = FormatHelp(
@@ -65,11 +72,12 @@ Parameters: TypeAlias = "Mapping[str, Argument]"
 def read_machine(source: Source, element: Element, load: Loader) -> XmlMachine:
     """The machine of a file. Raises UnreadableMachineError."""
     name = element.attributes.get("name") or "sm"
-    made = XmlMachine(root=StateMachine(name=name, type=ROOT, span=Span(source, 0, 0)))
+    root = StateMachine(name=name, type=ROOT, span=Span(source, 0, 0))
+    made = XmlMachine(root=root, one_rule=True)
     reader = _Reader(source, load, made, (source.name,))
-    root = reader.machine(element, (name,), {}, {})
-    assert isinstance(root, StateMachine)
-    made.root = root
+    node = reader.machine(element, (name,), {}, {})
+    assert isinstance(node, StateMachine)
+    made.root = node
     return made
 
 
@@ -182,18 +190,25 @@ class _Reader(XmlText):
         what = f"{where}.{cls}" if where else cls
         self.lose_others(element)
         short = type_name(cls, "State")
-        return self.made(element, names, edges, given, short, f"`{what}` is for YASMIN")
+        is_python = bool(where) and element.attributes.get("type") != "cpp"
+        if is_python and all(map(is_name, (*where.split("."), cls))):
+            place = ClassPlace(module=where, name=cls)
+            return self.made(element, names, edges, given, short, place=place)
+        return self.made(element, names, edges, given, short, f"`{what}` is no class of Python")
 
     def made(
         self, element: Element, names: Names, edges: Edges, given: Parameters, short: str,
-        obstacle: str,
+        obstacle: str = "", place: ClassPlace | None = None,
     ) -> Node:  # fmt: skip
-        """A state whose code is not taken over."""
+        """A state of a class of Python, or one whose code is not taken over."""
         span = self.span(element)
-        parameters = tuple(self.parameters(element, given).values())
+        parameters = self.parameters(element, given)
+        calls = (f"set_parameter({name!r}, {flat(literal(argument.data))})"
+                 for name, argument in parameters.items())  # fmt: skip
         self.result.states[names] = Construction(
-            span=span, short=short, obstacle=obstacle, parameters=parameters,
-            file=self.source.name,
+            span=span, cls=place, short=short, obstacle=obstacle, code="yasmin",
+            calls=tuple(calls) if place is not None else (),
+            parameters=tuple(parameters.values()), file=self.source.name,
         )  # fmt: skip
         return leaf(names[-1], short, edges, span, remaps=self.remaps(element), is_open=True)
 

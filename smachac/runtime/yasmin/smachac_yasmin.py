@@ -211,6 +211,64 @@ class Skill(_Node, State):
             return self.catches
 
 
+class Native(_Node, State):
+    """A state of YASMIN with a class of its own. Its declared keys are those of its container, as
+    for a `Skill`; all other keys are those of the blackboard, with the remapping of the state and
+    of the containers around it.
+    """
+
+    def __init__(self, state, inputs=(), outputs=(), catches=""):
+        self.state = state.yasmin
+        State.__init__(self, sorted({*self.state.get_outcomes(), *([catches] if catches else [])}))
+        self.declared = (*inputs, *outputs)
+        self.catches = catches
+
+    def configure(self):
+        self.state.configure()
+
+    def request(self):
+        self.requested = True
+        self.tell("preempt")
+        self.state.cancel_state()
+
+    def cancel_state(self):
+        self.request()
+        State.cancel_state(self)
+
+    def bind(self, blackboard):
+        """Take the remapping of the containers around the state."""
+        above, node = [], self
+        while node.parent is not None:
+            above.append({} if isinstance(node.parent, Repeat) else node.remapping)
+            node = node.parent
+        self.names = {}
+        for remapping in reversed(above):
+            outer = dict(self.names)
+            self.names |= {key: outer.get(name, name) for key, name in remapping.items()}
+        for key in self.declared:
+            self.names[key] = self.parent.prefix + self.remapping.get(key, key)
+
+    def execute(self, blackboard):
+        if self.parent.requested:
+            self.parent.pass_on(self)
+        self.tell("enter")
+        before = blackboard.get_remappings()
+        blackboard.set_remappings(self.names)
+        try:
+            outcome = self.state(blackboard)
+        except Exception as error:
+            self.tell("error", message=f"{type(error).__name__}: {error}")
+            if not self.catches:
+                raise
+            _LOG.error(traceback.format_exc())
+            outcome = self.catches
+        finally:
+            blackboard.set_remappings(before)
+        if self.state.is_canceled():
+            self.serve()  # it was running when the request came
+        return self.ended(outcome)
+
+
 class _Container(_Node):
     """What containers share: keys of their own on the blackboard, and the states in them.
 
@@ -232,6 +290,11 @@ class _Container(_Node):
         state.path, state.parent = f"{self.path}/{name}", self
         state.remapping = dict(remapping)
         self.children[name] = state
+
+    def configure_all(self):
+        """Configure the states, as a state machine of YASMIN does with its own."""
+        for state in self.children.values():
+            state.configure()
 
     def keys(self, state):
         """A function that makes the userdata of a state."""
@@ -389,6 +452,8 @@ class Concurrence(_Container, State):
         """Add a state."""
         self.take(name, state, remapping)
 
+    configure = _Container.configure_all
+
     def cancel_state(self):
         self.request()
         State.cancel_state(self)
@@ -478,6 +543,8 @@ class Repeat(_Container, State):
     def keys(self, state):
         names = _AllNames(self.prefix)
         return partial(AllKeys, inputs=names, outputs=names)
+
+    configure = _Container.configure_all
 
     def cancel_state(self):
         self.request()

@@ -18,6 +18,7 @@ from smachac.targets.dot.style import (
     FILLS,
     FONT,
     INK,
+    JOINS,
     LOOP_BORDER,
     LOOP_FILL,
     PARALLEL_BORDER,
@@ -154,7 +155,7 @@ def _frame(place: Position) -> Iterator[str]:
     match container:
         case Concurrence():
             fill, border, style = PARALLEL_FILL, PARALLEL_BORDER, "rounded,filled,dashed"
-            kind = f"|| {kind}" + (", first to end" if container.join == "any" else "")
+            kind = f"|| {kind}{JOINS[container.join]}"
         case nodes.Iterator():
             fill, border = LOOP_FILL, LOOP_BORDER
     title = f"<B>{html(state.name)}</B>  {font(kind, colour=FAINT, size=9)}"

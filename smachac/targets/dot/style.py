@@ -31,6 +31,9 @@ TONES = {
 }
 """The line and fill colours by tone of an outcome."""
 
+JOINS = {"all": "", "any": ", first to end", "rule": ", first rule that holds"}
+"""What ends a concurrence, by its `join`, after its kind."""
+
 UNKNOWN_LEGEND = "dashed: not known exactly"
 UNKNOWN_STYLE = "rounded,filled,dashed"
 """What the dashed boxes of pictures mean, and their style: states that are not known exactly."""

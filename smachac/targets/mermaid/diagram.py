@@ -14,7 +14,7 @@ from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Leaf, Machine, StateMachine
 from smachac.ir.outcome_names import fails
 from smachac.ir.written import Written, WrittenEdge, WrittenState, items_in_words
-from smachac.targets.dot.style import UNKNOWN_LEGEND
+from smachac.targets.dot.style import JOINS, UNKNOWN_LEGEND
 
 FAILURE = "✗"
 """The mark of an edge for an outcome of failure."""
@@ -155,8 +155,8 @@ def _title(state: WrittenState) -> str:
         words = ", ".join(label(badge.text) for badge in state.badges)
         return f"{name} ({words})" if words else name
     kind = label(container.type)
-    if isinstance(container, Concurrence) and container.join == "any":
-        kind += ", first to end"
+    if isinstance(container, Concurrence):
+        kind += JOINS[container.join]
     return f"{name} ({_with_badges(kind, state)})"
 
 

@@ -416,6 +416,10 @@ def _leaf(
     )
     callbacks = called.value.data if called is not None else None
     made = call(used.class_name, arguments)
+    wrapper = module.context.wrappers.get(leaf.type)
+    if wrapper is not None:
+        module.additions[wrapper] = None
+        made = call(wrapper, [("", made), ("", names(own_outcomes(leaf)))])
     add = added.statement(leaf, made, inside, module, callbacks=callbacks)
     return structure.documentation(added.outer.doc, inside.depth + 1) + add
 
@@ -474,6 +478,8 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
         has_code = type_.code or type_.classes
         way = f"add `{named}` to the `code`" if has_code else f"write `code: {{{named}}}`"
         help = f"add the template `{code}`, or {way} in `{leaf.type}.yml`"
+        if "yasmin" in type_.code:
+            help = f"it is a class of YASMIN: build it with `--target yasmin`, or {way}"
         package, _, class_ = code.rpartition(".")
         if package and not code.endswith((".py", ".tpl")):
             help = f'write `code: {{python: "{package}:{class_}"}}` in `{leaf.type}.yml`'

@@ -1,11 +1,13 @@
 """YASMIN: a Python module that builds the machine of YASMIN around the states of the SMACH program.
 
-The Python target prints the program with the classes of the states; `<name>_yasmin.py` builds the
-containers over `runtime/yasmin/smachac_yasmin.py`. structure.py prints them, package.py the files
-of a package of ROS 2.
+The Python target prints the program with the classes of the states, those of YASMIN too;
+`<name>_yasmin.py` builds the containers over `runtime/yasmin/smachac_yasmin.py`. structure.py
+prints them, package.py the files of a package of ROS 2.
 """
 
 from __future__ import annotations
+
+from collections.abc import Mapping
 
 from smachac.diagnostics.diagnostic import Report, has_errors, in_order
 from smachac.ir.nodes import Checked
@@ -16,7 +18,7 @@ from smachac.targets.python import TARGET as PYTHON
 from smachac.targets.python.formatter import WIDTH, docstring_lines, string
 from smachac.targets.python.package import package_name
 from smachac.targets.yasmin.package import package_files
-from smachac.targets.yasmin.structure import CLASSES, built, refused
+from smachac.targets.yasmin.structure import CLASSES, built, native_types, refused
 
 RUNTIME = "smachac_yasmin.py"
 
@@ -33,7 +35,9 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     options = {name: value for name, value in context.options.items() if name != "package"}
     options["standalone"] = "true"
     found: Report = [*refused(machine)]
-    files = PYTHON.emit(machine, replace(context, options=options), found)
+    native = native_types(machine)
+    inside = replace(context, options=options, wrappers=dict.fromkeys(native, "state_of_yasmin"))
+    files = PYTHON.emit(_as_python(machine, native), inside, found)
     report.extend(in_order(found))
     if has_errors(found):
         return {}
@@ -49,6 +53,16 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     module = module_text(machine, program.removesuffix(".py"), package)
     modules = {f"{stem(machine)}_yasmin.py": module, **files}
     return package_files(machine, package, modules, text) if package else modules
+
+
+def _as_python(machine: Checked, native: Mapping[str, str]) -> Checked:
+    """The machine for the Python target, in which a class of YASMIN is the code of its state type.
+    The keys of such a state are no arguments of its class."""
+    types = dict(machine.state_types)
+    for name, code in native.items():
+        given = types[name].given - {"input_keys", "output_keys", "outcomes"}
+        types[name] = replace(types[name], code={"python": code}, given=given, class_facts=None)
+    return Checked(replace(machine, state_types=types))
 
 
 def _package(machine: Checked, context: BuildContext) -> str:

@@ -33,7 +33,7 @@ from smachac.targets.python.formatter import (
 from smachac.targets.python.items import items, refused_items
 from smachac.targets.python.structure import notes, variable_names
 
-CLASSES = ("Concurrence", "Repeat")
+CLASSES = ("Concurrence", "Native", "Repeat")
 """The classes of the runtime that not every module needs."""
 
 Arguments = list[tuple[str, Doc]]
@@ -61,7 +61,8 @@ def built(machine: Machine) -> list[str]:
     lines = ["states, userdata = parts.states, parts.userdata"]
     reached = {path: _reached(node) for path, node in containers(machine.root)}
     with deep_recursion():
-        lines += _container(machine.root, machine.root.name, "", fresh, variables, reached)
+        native = frozenset(native_types(machine))
+        lines += _container(machine.root, machine.root.name, "", fresh, variables, reached, native)
     return [*lines, f"return {variables[machine.root.name]}"]
 
 
@@ -88,9 +89,11 @@ def _container(
     fresh: Callable[[str, str], str],
     variables: dict[str, str],
     reached: Mapping[str, frozenset[str]],
+    native: frozenset[str],
 ) -> Iterator[str]:
     """The statements that make a container and add its states. `around` is the path of the
-    container around it, `reached` are the states that can be entered."""
+    container around it, `reached` are the states that can be entered, `native` the state types
+    whose classes are of YASMIN."""
     variable = variables[path] = fresh(node.name, "sm_" if around else "")
     states = frozenset(child.name for child in node.children)
     made = laid_out(_construct(node, path), WIDTH - 4, len(variable) + 3)
@@ -104,15 +107,30 @@ def _container(
             continue
         if isinstance(child, Leaf):
             caught = [("catches=", string(child.catches))] if child.catches else []
-            state: Doc = call("Skill", [("", f"states[{string(where)}]"), *caught])
+            function = "Native" if child.type in native else "Skill"
+            own = keys(child) if child.type in native else []
+            state: Doc = call(function, [("", f"states[{string(where)}]"), *own, *caught])
         else:
-            yield from _container(child, where, path, fresh, variables, reached)
+            yield from _container(child, where, path, fresh, variables, reached, native)
             state = variables[where]
         yield from _added(node, variable, child, state, states).split("\n")
     if isinstance(node, StateMachine | nodes.Sequence) and node.initial:
         first = next(child.name for child in node.children if child.name in reached[path])
         if node.initial != first:
             yield f"{variable}.set_start_state({string(_state_name(node, node.initial))})"
+
+
+def native_types(machine: Machine) -> dict[str, str]:
+    """The classes of YASMIN that interfaces name, by state type."""
+    return {name: type_.code["yasmin"] for name, type_ in machine.state_types.items()
+            if "yasmin" in type_.code}  # fmt: skip
+
+
+def keys(node: Node) -> Iterator[tuple[str, Doc]]:
+    """The arguments for the declared keys."""
+    for word, some in (("inputs=", node.inputs), ("outputs=", node.outputs)):
+        if some:
+            yield word, names(key.name for key in some)
 
 
 def _construct(node: Container, path: str) -> Group:
@@ -132,9 +150,7 @@ def _construct(node: Container, path: str) -> Group:
             arguments += _repeat(node)
         case _:
             assert_never(node)
-    for word, keys in (("inputs=", node.inputs), ("outputs=", node.outputs)):
-        if keys:
-            arguments.append((word, names(key.name for key in keys)))
+    arguments += keys(node)
     if node.userdata:
         arguments.append(("userdata=", f"userdata[{string(path)}]"))
     if node.catches:

@@ -471,16 +471,14 @@ sm: StateMachine [done, failed]
     )
 
 
-def test_import_names_the_framework_and_writes_nothing(
+def test_import_proves_the_script(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     read(GRAPH, tmp_path)
     monkeypatch.chdir(tmp_path)
-    assert main(["import", "machine.py", "-o", "project"]) == 1
-    error = capsys.readouterr().err
-    assert "`sm` was not imported: machines for YASMIN are not imported\n" in error
-    assert "--> machine.py:16:6: this is a machine for YASMIN\n" in error
-    assert not (tmp_path / "project").exists()
+    assert main(["import", "machine.py", "-o", "project"]) == 0
+    assert "proof: the graph of main.yml is the graph of machine.py" in capsys.readouterr().out
+    assert main(["check", "project/main.yml", "-q"]) == 0
 
 
 def test_folders_and_pictures(
