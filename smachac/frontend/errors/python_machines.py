@@ -303,7 +303,8 @@ def wrong_call(span: Span, kind: CallFault, names: Sequence[str]) -> Finding:
     """A call that builds a machine has arguments that the function does not accept.
 
     An argument is missing, there is no parameter for one, a class is passed in place of a state, a
-    list in place of a dictionary, or a state is added by the method of another container.
+    list in place of a dictionary, or a state is added by the method of another container or without
+    an open one.
 
     Exactly: calls of functions and classes that were read, and of methods of SMACH, which are
     always made: not under an unknown condition, and not in a `try` statement.
@@ -346,7 +347,7 @@ def wrong_call(span: Span, kind: CallFault, names: Sequence[str]) -> Finding:
 
 CallFault = Literal[
     "unknown argument", "too many arguments", "missing argument", "class as state",
-    "no dictionary", "other container",
+    "no dictionary", "other container", "no container",
 ]  # fmt: skip
 """Why a call fails."""
 
@@ -355,7 +356,7 @@ def _words_of_call(kind: CallFault, names: Sequence[str]) -> tuple[str, str]:
     """The message and the help for a call that fails. `names` are the function and the argument
     with the parameters, the missing arguments, or how many it takes and gets; the class; the
     argument; or the method with its container and the one that is open."""
-    first, *others = names
+    first, *others = names or ("",)
     match kind:
         case "unknown argument":
             word, *known = others
@@ -377,6 +378,8 @@ def _words_of_call(kind: CallFault, names: Sequence[str]) -> tuple[str, str]:
             return f"`{first}` is a class, not a state", f"write `{first}()`"
         case "no dictionary":
             return f"`{first}` is a list, not a dictionary", f"write `{first}={{'...': '...'}}`"
+        case "no container":
+            return "no container is open here", "move the call into the `with` of its container"
         case "other container":
             (found,) = others
             message = f"the container that is open here is a {found}, not a {first}"

@@ -112,8 +112,9 @@ class Evaluator:
     in the order in which they were made, `called` the functions that were called, `generators`
     whether one of them is a generator. `exhausted`: a part of the file took too many steps.
     `assumed` are the values of conditions that are not known, by their code, `used` those that were
-    needed. `unsure`, `tries` and `guesses` count the conditions, the `try` statements and the calls
-    of one of several functions that the evaluation is in."""
+    needed. `unsure`, `tries`, `managers` and `guesses` count the conditions, the `try` statements,
+    the `with` statements of objects that are not known, and the calls of one of several functions
+    that the evaluation is in."""
 
     def __init__(self, project: Project, assumed: Mapping[str, bool] | None = None) -> None:
         self.project = project
@@ -131,8 +132,10 @@ class Evaluator:
         self.opened: list[Value] = []
         self.unsure = 0
         self.orphans = 0
+        self.sees_opened = False
         self.tries = 0
         self.guesses = 0
+        self.managers = 0
         self.exhausted = False
         self.faults: list[UseFault] = []
         self.missed: set[tuple[int, str]] = set()
@@ -217,7 +220,7 @@ class Evaluator:
         self.opened.clear()
         self.regions.clear()
         self.calls.clear()
-        self.unsure = self.tries = self.guesses = 0
+        self.unsure = self.tries = self.guesses = self.managers = 0
         self.exhausted = True
         self.heap.reset()
 
@@ -459,6 +462,7 @@ class Evaluator:
     ) -> Completion | None:
         opened = len(self.opened)
         leave: list[Value] = []
+        managers = self.managers
         for item in items:
             found = self.value(item.context_expr, frame)
             container = self._opens(found)
@@ -469,9 +473,12 @@ class Evaluator:
                 enter = self.of_class(found.cls, "__enter__", found)
                 bound = self.call(enter, Arguments(), None, frame)
                 leave.append(self.of_class(found.cls, "__exit__", found))
+            else:
+                self.managers += 1
             if item.optional_vars is not None:
                 self.assign(item.optional_vars, bound, frame)
         end = self.block(body, frame)
+        self.managers = managers
         for method in reversed(leave):
             self.call(method, Arguments((NONE, NONE, NONE)), None, frame)
         del self.opened[opened:]
@@ -1499,6 +1506,7 @@ class Evaluator:
                 case Instance() if isinstance(children := part.slots.get("$children"), Children):
                     self.heap.set(part.slots, "$exposed", Const(True))
                     self.heap.set(part.slots, "$children", Children(children.added, False))
+                    self.sees_opened = False
 
     def _spent(self, value: Value) -> Value:
         """A new value, whose size counts as steps."""

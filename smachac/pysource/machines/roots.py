@@ -76,11 +76,13 @@ def machines_of(
     before = len(evaluator.made)
     complete = True
     module: Value = UNKNOWN
+    evaluator.sees_opened = True
     try:
         module = repository.module(evaluator, file, main=True)
     except (BudgetError, RecursionError):
         complete = False
         evaluator.reset()
+    evaluator.sees_opened = False
     evaluator.opened.clear()
     found = [read(_roots(evaluator, before, file, closed=True, complete=complete))]
     if isinstance(module, ModuleValue):

@@ -251,6 +251,9 @@ def _add(kind: str) -> Run:
         evaluator.adds += 1
         if not evaluator.opened:
             evaluator.orphans += 1
+            is_sure = evaluator.sees_opened and not evaluator.managers and evaluator.is_certain
+            if is_sure and span is not None:
+                evaluator.faults.append(UseFault("no container", span))
             return state or UNKNOWN
         if span is None:
             return state or UNKNOWN

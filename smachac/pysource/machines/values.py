@@ -325,12 +325,16 @@ class Arguments:
 class Interpreter(Protocol):
     """The part of the evaluator that models of libraries use. `opened` are the containers that
     `with` has opened; `adds` counts all states that were added, `orphans` those to a container
-    of a caller. `is_certain`: an exception would end the program here."""
+    of a caller. `is_certain`: an exception would end the program here. `managers` counts
+    the `with` statements of objects that are not known, which can open a container too;
+    `sees_opened`: no other code can have opened one."""
 
     opened: list[Value]
     orphans: int
     adds: int
     faults: list[UseFault]
+    managers: int
+    sees_opened: bool
 
     @property
     def is_certain(self) -> bool: ...
@@ -359,6 +363,7 @@ UseKind = Literal[
     "text as list", "shared transitions", "missing member", "repeated key",
     "state named as outcome", "no such start state", "unknown argument", "too many arguments",
     "missing argument", "class as state", "no dictionary", "other container",
+    "no container",
 ]  # fmt: skip
 
 

@@ -92,6 +92,11 @@ WRONG = {
         '    sm.add("A", Dooo())\n',
         'SM803 sm.add("A", Dooo())',
     ),
+    "a state behind the `with` of its container": (
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Do())\n'
+        'smach.StateMachine.add("B", Do())\n',
+        'SM808 smach.StateMachine.add("B", Do())',
+    ),
     "a key twice": (
         'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
         '    sm.add("A", Do(), {"ok": "gone", "ok": "ok"})\n',
@@ -176,6 +181,31 @@ def test_what_cannot_work_is_found(name: str, tmp_path: Path) -> None:
 
 
 RIGHT = {
+    "containers that other code opens": """
+from contextlib import ExitStack, contextmanager
+
+@contextmanager
+def opened(sm):
+    with sm:
+        yield sm
+
+def add(name):
+    smach.StateMachine.add(name, Do())
+
+first, second, third = (smach.StateMachine(outcomes=["ok"]) for _ in range(3))
+with opened(first):
+    add("A")
+with vendor.opened(second):
+    add("A")
+third.open()
+add("A")
+third.close()
+with ExitStack() as stack:
+    stack.enter_context(second)
+    add("B")
+vendor.open(first)
+add("B")
+""",
     "a first value of the result in a function that handles exceptions": """
 class Choose(smach.State):
     def __init__(self):
