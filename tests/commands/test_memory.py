@@ -110,9 +110,9 @@ def test_the_limit_of_the_process_is_restored_and_never_raised() -> None:
 def test_beyond_the_limit_of_cpu_time_the_command_ends(words: list[str], tmp_path: Path) -> None:
     states = "".join(
         f"  - S{n}: {{template: SleepState, time: 1, transitions: {{succeeded: S{n + 1}}}}}\n"
-        for n in range(20_000)
+        for n in range(60_000)
     )
-    last = "  - S20000: {template: SleepState, time: 1, transitions: {succeeded: done}}\n"
+    last = "  - S60000: {template: SleepState, time: 1, transitions: {succeeded: done}}\n"
     head = "name: sm\noutcomes: [done, preempted]\nstates:\n"
     (tmp_path / "main.yml").write_text(head + states + last, encoding="utf-8")
     ended = run(*words, "main.yml", "--time-limit", "1", folder=tmp_path)
