@@ -144,7 +144,8 @@ def _is_deeper(tree: ast.AST, deepest: int) -> bool:
         for node in level:
             if _characters(node) < shortest:
                 continue
-            for part in vars(node).values():
+            for name in node._fields:  # pyflakes writes other attributes, which lead to other trees
+                part = getattr(node, name, None)
                 if isinstance(part, list):
                     inside += [item for item in part if isinstance(item, ast.AST)]
                 elif isinstance(part, ast.AST):

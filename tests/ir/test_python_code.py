@@ -172,3 +172,13 @@ def test_levels_are_counted_in_one_line_and_in_several(form: str, lines: str) ->
         levels += 1
         level = [part for node in level for part in ast.iter_child_nodes(node)]
     assert [python_code._is_deeper(tree, most) for most in (levels - 1, levels)] == [True, False]
+
+
+def test_attributes_that_others_write_into_nodes_are_no_levels() -> None:
+    """Python has one object for each `ast.Load()`, in which pyflakes writes the node around it."""
+    load = next(node for node in ast.walk(ast.parse("x")) if isinstance(node, ast.Load))
+    load.mark = ast.parse("-" * 2 * DEEPEST + "1")  # type: ignore[attr-defined]
+    try:
+        assert parse_code("x" + ".a" * (DEEPEST - 50))
+    finally:
+        del load.mark  # type: ignore[attr-defined]
