@@ -2,10 +2,9 @@
 
 A check of ten states makes 100 classes of values, and `dataclasses` compiles six methods for each:
 that took 40 % of the check (python bench/compile.py), its import alone 5 ms, because it imports
-`inspect`. Here `__init__` alone is compiled; `__eq__`,
-`__hash__` and `__repr__` are shared functions with the same results. Annotations are texts, as
-`from __future__ import annotations` makes them. The functions of `dataclasses`, as
-`fields` and `asdict`, accept the objects.
+`inspect`. Here `__init__` alone is compiled; `__eq__`, `__hash__` and `__repr__` are shared
+functions with the same results. Annotations are texts, as `from __future__ import annotations`
+makes them. The functions of `dataclasses`, as `fields` and `asdict`, accept the objects.
 
 For type checkers this is `dataclasses.dataclass`. They reject an assignment to a field of a frozen
 class; at run time nothing does, because the check of each assignment makes the creation of an
@@ -48,7 +47,7 @@ class Field:
 
     @property
     def _field_type(self) -> object:
-        """The mark by which `dataclasses.fields` knows a field from a class variable."""
+        """`dataclasses.fields` returns only the items with this value: no class variables."""
         import dataclasses
 
         return dataclasses._FIELD  # type: ignore[attr-defined]

@@ -1,4 +1,4 @@
-"""The proof that two machines behave alike, although names and nesting differ.
+"""The proof that two machines have the same behaviour, with other names and other nesting.
 
 A nested state machine is *transparent* if its states could stand in the container around it, with
 the same runs: its keys are those of that container under other names. Without the transparent
@@ -51,7 +51,7 @@ state."""
 
 
 class _DifferentError(Exception):
-    """The machines are not proved to behave alike."""
+    """There is no proof that the machines have the same behaviour."""
 
 
 def paired_states(before: Analysis | None, after: Analysis | None) -> dict[str, str] | None:
@@ -134,8 +134,8 @@ class _Side:
         return found
 
     def key(self, path: str, name: str) -> Key:
-        """The key that a key of a container stands for: through a transparent container, that of
-        the container around it."""
+        """The key with which a key of a container shares its value: the remapped key outside, if
+        the container is transparent; else the key itself."""
         passed: list[Key] = []
         found = (path, name)
         while found not in self._keys and found[0] in self.transparent:

@@ -306,8 +306,8 @@ def wrong_call(span: Span, kind: CallFault, names: Sequence[str]) -> Finding:
     list in place of a dictionary, or a state is added by the method of another container or without
     an open one.
 
-    Exactly: calls of functions and classes that were read, and of methods of SMACH, which are
-    always made: not under an unknown condition, and not in a `try` statement.
+    Exactly: calls that are always made, not under an unknown condition and not in a `try`
+    statement, of functions and classes that were read and of methods of the frameworks.
 
     Wrong:
         import smach

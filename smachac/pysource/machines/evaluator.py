@@ -1654,7 +1654,7 @@ def _is_other(before: object, now: object) -> bool:
 
 
 def _name_of(function: Function) -> str:
-    """The name of a function as a caller knows it: that of the class for a constructor."""
+    """The name that a call contains: of a constructor, the name of its class."""
     owner = function.owner
     return owner.name if owner is not None and function.name == "__init__" else function.name
 

@@ -1,6 +1,5 @@
-"""What the evaluator knows of a framework for state machines, as data, and what the models of their
-classes have in common.
-"""
+"""Tables of frameworks for state machines (`Framework`), and functions that the models of their
+classes share."""
 
 from __future__ import annotations
 

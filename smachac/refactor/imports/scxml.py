@@ -462,7 +462,7 @@ class _Reader(XmlText):
         return leaf(names[-1], short, edges, span)
 
     def outcome_name(self, element: Element, invokes: Sequence[Element], step: _Step) -> str | None:
-        """The outcome that a transition of an atomic state stands for; None if it has none."""
+        """The outcome for a transition of an atomic state; None if an outcome cannot replace it."""
         first = step.event.partition(".")[0]
         if first == "error" or step.event == "*":
             self.lose(self.span(step.element, "event"), f"the transition on `{step.event}`",
