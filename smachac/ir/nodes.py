@@ -277,7 +277,7 @@ class Leaf(_State):
 
     The other fields are facts of the state type (docs/state_types.md, Facts). `built_in` is the
     name of the built-in state type; it is empty for a type of the user, also for one of that name.
-    `any_key`: it is a state of YASMIN; it is open, but its outcomes are known.
+    `any_key`: it is a state of another framework; it is open, but its outcomes are known.
     `misplaced_keys` are the input keys that the script writes as variables of the state (SM003).
     `synthetic`: no such state is written; it stands for what is not known of its container.
     """
@@ -440,6 +440,11 @@ class VariableType:
     limits: Limits | None = None
 
 
+NATIVE: Mapping[str, str] = {"yasmin": "YASMIN", "flexbe": "FlexBE"}
+"""The keys of the `code` of state types whose classes are states of another framework, with its
+name; the target of the same name runs them."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StateType:
     """The interface of all states with one `template`.
@@ -515,9 +520,9 @@ class StateType:
 
     @property
     def any_key(self) -> bool:
-        """Whether the states can use any key of a blackboard, as a class of YASMIN can whose
-        interface has `input_keys: {"*": {}}`."""
-        return "yasmin" in self.code and "input_keys" in self.given
+        """Whether the states can use keys that the interface does not list, as a class of YASMIN or
+        FlexBE can whose interface has `input_keys: {"*": {}}`."""
+        return not self.code.keys().isdisjoint(NATIVE) and "input_keys" in self.given
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,7 +8,7 @@ from typing import Literal
 
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree
-from smachac.ir.nodes import Machine, StateType
+from smachac.ir.nodes import NATIVE, Machine, StateType
 from smachac.ir.script_paths import ScriptPath, walk_script
 from smachac.lsp.facts import Facts
 from smachac.lsp.place import FIELD, ITEM, KEY, STATE, VALUE, Body, Place
@@ -217,7 +217,7 @@ def _class_places(type_: StateType, facts: Facts) -> Iterator[Span]:
     known = type_.class_facts
     if known is not None and known.name is not None:
         yield known.name.span
-    elif ":" in (code := type_.code.get("python") or type_.code.get("yasmin", "")):
+    elif ":" in (code := next(_modules(type_), "")):
         module = load_module(code.partition(":")[0], facts.library)
         text = getattr(module, "text", None)
         if isinstance(text, Source):
@@ -231,6 +231,11 @@ def _class_places(type_: StateType, facts: Facts) -> Iterator[Span]:
     if source is not None:
         at = source.text.find(f"class {type_.classes['cpp']['class'].rpartition('::')[2]}")
         yield Span(source, max(at, 0), max(at, 0))
+
+
+def _modules(type_: StateType) -> Iterator[str]:
+    """The code of a state type that names a class in a module of Python, or a template."""
+    return (type_.code[key] for key in ("python", *NATIVE) if key in type_.code)
 
 
 def _variable_places(body: Body, name: str, facts: Facts) -> list[Span]:

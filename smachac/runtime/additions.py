@@ -42,11 +42,11 @@ class SleepState(smach.State):
         return "succeeded"
 
 
-def state_of_yasmin(state: Any, outcomes: Any) -> Any:
-    """Put a state of YASMIN into a machine of SMACH, which cannot run it: the module for YASMIN
-    does. Of its outcomes, those of the script are declared."""
+def native_state(state: Any, outcomes: Any) -> Any:
+    """Put a state of YASMIN or FlexBE into a machine of SMACH, which cannot run it: the containers
+    of that framework do. Of its outcomes, those of the script are declared."""
     made = smach.State(outcomes=list(outcomes))
-    made.yasmin = state
+    made.native = state
     return made
 
 

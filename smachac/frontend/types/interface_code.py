@@ -11,6 +11,7 @@ from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
 from smachac.frontend.text.unquoted import check_unquoted, is_name
 from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Tree
 from smachac.frontend.types.value_facts import check_language
+from smachac.ir.nodes import NATIVE
 
 Section: TypeAlias = tuple[Entry, ...]
 """The entries of a part of an interface."""
@@ -46,7 +47,7 @@ def code_by_language(section: Section, report: Report) -> dict[str, str]:
 def _suggested_class(language: str, text: str) -> str | None:
     """The help for a text that is neither `module:Class` nor, for Python, the name of a template;
     None for one of these and for other languages."""
-    if language not in ("python", "yasmin"):
+    if language not in ("python", *NATIVE):
         return None
     names = text.replace(":", ".", 1).split(".")
     importable = all(map(is_name, names))

@@ -15,7 +15,7 @@ from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
 from smachac.frontend.text.fields import as_flag, kind_of
 from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree
 from smachac.frontend.types.type_annotations import as_record
-from smachac.ir.nodes import Limits, is_number
+from smachac.ir.nodes import NATIVE, Limits, is_number
 from smachac.ir.types import ANY, Type, parse_type, unknown_words
 
 NAMES = ("joint", "frame", "limb", "model", "body")
@@ -214,9 +214,9 @@ def _replaced(type_: Type, number: Type) -> Type:
 LANGUAGES: Mapping[str, tuple[str, ...]] = {
     "python": ("py", "python2", "python3"),
     "cpp": ("c++", "cc", "cxx", "cplusplus", "c"),
-    "yasmin": (),
+    **dict.fromkeys(NATIVE, ()),
 }
-"""The languages of code, with other names for them; `yasmin` is Python for YASMIN."""
+"""The languages of code, with other names for them."""
 
 
 def check_language(word: Word, report: Report) -> None:

@@ -25,11 +25,13 @@ from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import BudgetError, Evaluator
 from smachac.pysource.machines.framework import Call, noted_of, userdata_of
 from smachac.pysource.machines.graph import Graph
+from smachac.pysource.machines.heap import Children
 from smachac.pysource.machines.libraries import parameters_of
 from smachac.pysource.machines.origins import Origins
 from smachac.pysource.machines.project import Repository
 from smachac.pysource.machines.smach_library import SMACH, takes_node
 from smachac.pysource.machines.values import (
+    Adjustable,
     Arguments,
     Class,
     Const,
@@ -61,7 +63,8 @@ MOST_COMBINATIONS = 256
 class Argument:
     """An argument of a call. `name` is empty for one that only has a place. `data` is its value,
     with code where YAML has no such value; None with `is_known` False: not known, `text` is its
-    code. `parameter`: the parameter of the container class around it whose value it is. `modules`
+    code. `has_default`: `data` is its value if nobody changes it. `parameter`: the parameter of the
+    container class around it whose value it is. `modules`
     are those that code in it names. `source` identifies a value that is not known, `word` is a
     name for it."""
 
@@ -69,6 +72,7 @@ class Argument:
     data: Data
     text: str = ""
     is_known: bool = True
+    has_default: bool = False
     parameter: str = ""
     modules: tuple[str, ...] = ()
     source: Hashable = None
@@ -131,11 +135,12 @@ class Callbacks:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Constructions:
     """The constructions of the states of a machine, the values that their userdata has first, the
-    items of iterators, and the callbacks of concurrences, each by the path of names. `noted` are
+    items of iterators, the callbacks of concurrences, and the levels of autonomy that outcomes need,
+    each by the path of names. `noted` are
     the calls that have an effect which is no part of a graph, by their names, `shared` the paths of
     states that are one object with the state of an earlier path, and their places. `modules` are
     those that the classes and the code need, each with the folder in which Python has to search
-    it. `ros` is the version of ROS that the code imports; 0: none. `one_rule`: a concurrence of
+    it. `ros` is the version of ROS of the programs; 0: none. `one_rule`: a concurrence of
     which two rules hold stops with an exception."""
 
     states: Mapping[Names, Construction]
@@ -147,6 +152,7 @@ class Constructions:
     modules: Mapping[str, str]
     ros: int = 0
     one_rule: bool = False
+    autonomy: Mapping[Names, Mapping[str, str]] = field(default_factory=dict)
 
 
 def constructions(graph: Graph, evaluator: Evaluator, repository: Repository) -> Constructions:
@@ -168,6 +174,7 @@ class _Reader:
         userdata: dict[Names, tuple[Argument, ...]] = {}
         items: dict[Names, Argument] = {}
         callbacks: dict[Names, Callbacks] = {}
+        autonomy: dict[Names, Mapping[str, str]] = {}
         noted: list[tuple[str, Span]] = []
         for names, node in with_names(self.graph.machine.root):
             self.names = names
@@ -186,6 +193,9 @@ class _Reader:
                 continue
             if isinstance(made.cls, Class):
                 states[names] = self._of_framework(made, self._state(made, node.span, around))
+            elif isinstance(behavior := made.slots.get("$behavior"), Instance):
+                states[names] = self._of_framework(made, self._of_behavior(behavior, node.span))
+            autonomy |= {(*names, name): levels for name, levels in _levels(made)}
             inside = made if isinstance(made.cls, Class) else around
             noted += [(call.name, call.span or node.span) for call in noted_of(made)]
             defaults = made.slots.get("$defaults")
@@ -197,10 +207,10 @@ class _Reader:
             if isinstance(node, Concurrence):
                 callbacks[names] = self._callbacks(node, made)
         return Constructions(
-            states=states, userdata=userdata, items=items, callbacks=callbacks,
+            states=states, userdata=userdata, items=items, callbacks=callbacks, autonomy=autonomy,
             noted=tuple(dict.fromkeys(noted)), shared=tuple(self._shared()),
-            modules=dict(sorted(self.modules.items())), ros=self._ros(states),
-            one_rule=self.graph.framework.one_rule,
+            modules=dict(sorted(self.modules.items())), one_rule=self.graph.framework.one_rule,
+            ros=self.graph.framework.ros or self._ros(states),
         )  # fmt: skip
 
     def _of_framework(self, made: Instance | None, found: Construction) -> Construction:
@@ -265,6 +275,10 @@ class _Reader:
         if isinstance(made.cls, Class):
             return self._of_class(made, made.cls, span, around)
         found = self._arguments(made, around)
+        module = self.graph.framework.places.get(made.cls.name)
+        if module is not None:
+            place = ClassPlace(module=module, name=made.cls.short)
+            return Construction(span=span, cls=place, short=place.name, arguments=found)
         named = {argument.name: argument for argument in found}
         node = "node" in named and self.graph.framework is SMACH
         if node:
@@ -291,6 +305,12 @@ class _Reader:
             cls_span=self.evaluator.span(cls.node, cls.frame),
             doc=(ast.get_docstring(cls.node) or "").strip().partition("\n")[0].strip(),
         )  # fmt: skip
+
+    def _of_behavior(self, behavior: Instance, span: Span) -> Construction:
+        """The construction of the machine of another behavior, without arguments: those of its
+        class are values of the states."""
+        name = behavior.cls.name if isinstance(behavior.cls, Class) else behavior.cls.short
+        return Construction(span=span, short=name)
 
     def _class_place(self, cls: Class) -> tuple[ClassPlace | None, str]:
         """The place from which a class can be imported; None with the reason."""
@@ -400,7 +420,7 @@ class _Reader:
         parameter = self._parameter(value, node, frame, around)
         data = _plain(value, span)
         code = self._code(value, node, frame) if data is UNWRITTEN else None
-        found = _argument(name, data, code, text, parameter, span)
+        found = _with_default(_argument(name, data, code, text, parameter, span), value)
         if found.is_known:
             return found
         if node is None:
@@ -512,7 +532,7 @@ class _Reader:
             code = self._code(value, None, value.frame)
         bound = self._bound(around) if around is not None else {}
         parameter = next((word for word, part in bound.items() if part is value), "")
-        found = _argument(name, data, code, name, parameter, span)
+        found = _with_default(_argument(name, data, code, name, parameter, span), value)
         return found if found.is_known else replace(found, source=(span, name), word=name)
 
     def _items(self, made: Instance, around: Instance | None, span: Span) -> Argument:
@@ -618,6 +638,22 @@ def _argument(
     known = data is not UNWRITTEN
     return Argument(name=name, data=data if known else None, text=text, is_known=known,  # type: ignore[arg-type]
                     parameter=parameter, modules=modules, span=span)  # fmt: skip
+
+
+def _with_default(argument: Argument, value: Value) -> Argument:
+    """An argument with the value that it has if the user of the machine does not change it."""
+    if argument.is_known or not isinstance(value, Adjustable):
+        return argument
+    data = _plain(value.default, argument.span)
+    return argument if data is UNWRITTEN else replace(argument, data=data, has_default=True)  # type: ignore[arg-type]
+
+
+def _levels(made: Instance) -> Iterator[tuple[str, Mapping[str, str]]]:
+    """The levels of autonomy of the outcomes of the states of a container, by state."""
+    children = made.slots.get("$children")
+    for added in children.added if isinstance(children, Children) else ():
+        if isinstance(added.label, Const) and added.autonomy:
+            yield str(added.label.value), dict(added.autonomy)
 
 
 def _plain(value: Value, span: Span) -> Data | object:

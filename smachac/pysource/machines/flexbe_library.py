@@ -8,7 +8,8 @@ only. Containers of `smachac_flexbe`, the module of generated programs, are buil
 from __future__ import annotations
 
 import ast
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 
 from smachac.diagnostics.source import Span
 from smachac.pysource.life_cycle import LifeCycle
@@ -20,6 +21,7 @@ from smachac.pysource.machines.framework import (
     copied,
     make_container,
     names_in,
+    noted,
     nothing,
     refuse,
     set_interface,
@@ -29,6 +31,7 @@ from smachac.pysource.machines.heap import Added
 from smachac.pysource.machines.values import (
     NONE,
     UNKNOWN,
+    Adjustable,
     Arguments,
     Const,
     DictValue,
@@ -71,8 +74,19 @@ _OUTCOMES_AT, _INPUTS_AT = ("DecisionState", "OperatorDecisionState"), (
 )  # fmt: skip
 """The states that get their outcomes as the first argument, or their input keys as the second."""
 
+PRIORITY = "flexbe_core.PriorityContainer"
+"""The container that runs alone in a concurrence."""
+
+LEVELS = ("Off", "Low", "High", "Full")
+"""The levels of autonomy by their numbers; `Inherit` is that of `Off`."""
+
 _OPTIONAL = {"InputState": ("timeout",)}
 """The outcomes that some versions have."""
+
+
+def _module(cls: str) -> str:
+    """The module of a class, as the app of FlexBE names it."""
+    return re.sub(r"(?<!^)(?=[A-Z])", "_", cls).lower()
 
 
 def _names(texts: tuple[str, ...]) -> Value:
@@ -122,6 +136,8 @@ def _container(kind: str) -> Run:
             return NONE
         _state(evaluator, arguments, span)
         make_container(evaluator, me, kind)
+        if any(getattr(cls, "name", "") == PRIORITY for cls in evaluator.classes(me.cls)):
+            noted(PRIORITY)(evaluator, Arguments((me,)), span)
         if kind == "Concurrence":
             conditions = arguments.get(1, "conditions", NONE) or UNKNOWN
             evaluator.heap.set(me.slots, "$conditions", conditions)
@@ -146,12 +162,23 @@ def _add(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Val
     slots = container.slots if isinstance(container, Instance) else {}
     kind = "concurrence" if slots.get("$kind") == Const("Concurrence") else "add"
     added = Added(label=label, state=state, transitions=copied(transitions),
-                  remapping=copied(remapping), span=span, kind=kind)  # fmt: skip
+                  remapping=copied(remapping), span=span, kind=kind,
+                  autonomy=tuple(_levels(arguments.get(3, "autonomy"))))  # fmt: skip
     is_added = add_child(evaluator, container, added)
     outcomes = sequence(slots.get("$outcomes")) or ()
     if is_added and isinstance(label, Const) and label in outcomes:
         refuse(evaluator, "state named as outcome", label, span)
     return NONE
+
+
+def _levels(given: Value | None) -> Iterator[tuple[str, str]]:
+    """The outcomes with another level of autonomy than `Off`, and that level."""
+    pairs = given.items if isinstance(given, DictValue) else {}
+    for outcome, level in pairs.values() if isinstance(pairs, Mapping) else ():
+        value = getattr(level, "value", None)
+        name = LEVELS[value] if isinstance(value, int) and 0 <= value < len(LEVELS) else value
+        if isinstance(outcome, Const) and name in LEVELS[1:]:
+            yield str(outcome.value), str(name)
 
 
 def _behavior(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
@@ -165,8 +192,10 @@ def _behavior(evaluator: Interpreter, arguments: Arguments, span: Span | None) -
 def _add_parameter(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
     """A parameter of a behavior. The operator can give it any value."""
     me, name = arguments.get(0, "self"), arguments.get(1, "name")
+    default = arguments.get(2, "default", UNKNOWN) or UNKNOWN
     if isinstance(me, Instance) and isinstance(name, Const):
-        evaluator.heap.set(me.slots, str(name.value), Unknown(reason="a parameter"))
+        value = Adjustable(reason="a parameter", default=default)
+        evaluator.heap.set(me.slots, str(name.value), value)
     return NONE
 
 
@@ -202,6 +231,7 @@ def _use_behavior(evaluator: Interpreter, arguments: Arguments, span: Span | Non
     machine = evaluator.call(create, Arguments(), None, _frame())
     evaluator.opened[:] = opened
     if isinstance(machine, Instance):
+        evaluator.heap.set(machine.slots, "$behavior", behavior)
         _use_defaults(evaluator, machine, arguments.get(3, "default_keys", NONE) or NONE)
     _put(evaluator, me, "$machines", name, machine)
     return machine
@@ -284,7 +314,6 @@ _MODULE: Mapping[str, Value] = {
     "set_node": Native("nothing", nothing),
     "initialize_flexbe": Native("nothing", nothing),
     "UserData": Native("UserData", _unknown),
-    "Autonomy": UNKNOWN,
     "Logger": UNKNOWN,
     "StateLogger": UNKNOWN,
     "BehaviorLibrary": UNKNOWN,
@@ -295,6 +324,7 @@ FLEXBE = Framework(
     packages=("flexbe_core", "flexbe_states"),
     modules={
         "flexbe_core": _MODULE,
+        "flexbe_core.Autonomy": {level: Const(level) for level in ("Inherit", *LEVELS)},
         "flexbe_core.proxy": {},
         "flexbe_states": classes("flexbe_states", " ".join(_READY)),
         ".smachac_flexbe": {
@@ -324,6 +354,9 @@ FLEXBE = Framework(
     entries=frozenset(["create"]),
     same_name_exits=False,
     exits=(PREEMPTED,),
+    code="flexbe",
+    places={f"flexbe_states.{name}": f"flexbe_states.{_module(name)}" for name in _READY},
+    ros=2,
     undeclared_outcomes=True,
     undeclared_keys=True,
     life_cycle=LifeCycle(

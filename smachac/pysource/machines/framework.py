@@ -61,9 +61,10 @@ class Framework:
     the effect in its terms, or an empty text for that of the rule; None: all rules are about it.
     With those in `works` a machine works all the same: only a check with all rules reports them.
 
-    For the import: `code` is the key of its classes in the `code` of interfaces, empty if no script
-    can have them. `parts` are classes that only work in another one, each with the reason.
-    `one_rule`: a concurrence of which two rules hold stops with an exception.
+    For the import: `code` is the key of its classes in the `code` of interfaces. `places` are the
+    modules of classes that a script can name. `parts` are classes that only work in another one,
+    each with the reason. `one_rule`: a concurrence of which two rules hold stops with an exception.
+    `ros` is the version of ROS that its target needs, 0 for that of the code.
     """
 
     name: str
@@ -86,9 +87,11 @@ class Framework:
     undeclared_keys: bool = False
     effects: Mapping[str, str] | None = None
     works: frozenset[str] = frozenset()
-    code: str = ""
+    code: str
+    places: Mapping[str, str] = field(default_factory=dict)
     parts: Mapping[str, str] = field(default_factory=dict)
     one_rule: bool = False
+    ros: int = 0
 
 
 def classes(prefix: str, names: str) -> dict[str, Value]:

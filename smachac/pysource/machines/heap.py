@@ -53,7 +53,8 @@ class Changes(dict[tuple[int, Any], tuple[Slots, Any, Any]]):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Added:
     """A state that was added to a container: the arguments of the call, as they were then.
-    `possible`: an unknown condition decides whether it is added."""
+    `possible`: an unknown condition decides whether it is added. `autonomy` are the outcomes for
+    which an operator has to decide, each with the level below which that is so."""
 
     label: Value
     state: Value
@@ -66,6 +67,7 @@ class Added:
     breaks: Value | None = None
     final: Value | None = None
     possible: bool = False
+    autonomy: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

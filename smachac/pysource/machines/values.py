@@ -77,6 +77,13 @@ class OpenText(Unknown):
         return self.text.partition("{")[0]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Adjustable(Unknown):
+    """A value that the user of a machine can change, and what it is without that."""
+
+    default: Value
+
+
 def open_text(text: str) -> Value:
     """A text with an open part, if it is no longer than a name."""
     return OpenText(text=text) if len(text) <= LONGEST_NAME else UNKNOWN

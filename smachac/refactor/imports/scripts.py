@@ -30,6 +30,7 @@ from smachac.pysource.machines.constructions import (
     Names,
     Outcomes,
 )
+from smachac.pysource.machines.flexbe_library import PRIORITY
 from smachac.pysource.machines.yasmin_library import BLACKBOARD
 from smachac.records import dataclass, field
 from smachac.refactor.imports.state_types import (
@@ -61,6 +62,7 @@ _NOTED = {
     "add_input_key": (
         "the default value of a key", "write it in `userdata`, or in the constructor of the class"
     ),
+    PRIORITY: ("the priority of the container", "pause the other states of the concurrence in code"),
     BLACKBOARD: ("the values of the blackboard", "write them in `userdata` of the script"),
 }  # fmt: skip
 """What is not taken over of calls that do not register functions, and what to do, by name."""
@@ -147,7 +149,7 @@ class _Scope:
         """The value of a param in the script that calls this one, or in the main script."""
         if self.around is not None:
             return self.around.value(argument, writer)
-        if not argument.is_known:
+        if not (argument.is_known or argument.has_default):
             writer.lose(argument.span, f"`{argument.text}` is not known",
                         f"give the param `{name}` of the script a value")  # fmt: skip
         return writer.data(argument)

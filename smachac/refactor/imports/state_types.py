@@ -62,6 +62,7 @@ _USABLE = frozenset(["robot", "timeout", "retry", "for_each"])
 _LANGUAGES = {
     "python": ("smach.State", "userdata"),
     "yasmin": ("yasmin.State", "blackboard"),
+    "flexbe": ("flexbe_core.EventState", "userdata"),
 }
 """The base class of the classes that an import writes, and the argument of their `execute`, by the
 key of the `code` of interfaces."""
@@ -266,7 +267,7 @@ def _module(types: Iterable[ImportedType]) -> str:
                       if made.construction.cls is not None and not made.construction.obstacle}
                      | _modules_in(types))  # fmt: skip
     lines = ['"""Classes for the states of the scripts in this folder."""']
-    plain = [name for name in ("yasmin", "yasmin_ros") if f"({name}." in text]
+    plain = [name for name in ("yasmin", "yasmin_ros", "flexbe_core") if f"({name}." in text]
     if plain:
         lines += ["", *(f"import {name}" for name in plain)]
     if libraries:

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 
 import flexbe_core
 from flexbe_core import Logger, PriorityContainer
-from flexbe_core.core import PreemptableState
+from flexbe_core.core import PreemptableState, UserData
 
 PREEMPTED = "preempted"
 RENAMED = {PREEMPTED: "preempted_", "None": "None_"}
@@ -147,14 +147,21 @@ class _Node:
         self.result = outcome
         self.tell("exit", outcome=_written(outcome))
         is_in_machine = isinstance(self.parent, OperatableStateMachine) and not self.parent.loop
-        if is_in_machine and outcome not in self.outcomes:
+        if is_in_machine and outcome not in (*self.outcomes, PREEMPTED):
             self.tell("error", message=f"{_written(outcome)!r} is not one of its outcomes")
 
 
 class EventState(_Node, flexbe_core.EventState):
-    """A state with SMACH's interface (`work`) as a state of FlexBE: a thread runs it."""
+    """A state with SMACH's interface (`work`) as a state of FlexBE: a thread runs it.
 
-    work = None
+    `native` is the state of FlexBE in `work`, if there is one. Its methods run as they are, with its
+    own keys: an exception is logged, and it stays active, unless the script has a transition for
+    that. After a request to stop it is left (`is_left`): it has no outcome of its own, but that of
+    FlexBE, which ends all containers around it up to the one from which the request comes.
+    """
+
+    work = native = None
+    is_left = has_failed = False
 
     def __init__(self, outcomes, input_keys=None, output_keys=None):
         # The App reads these arguments, which it gives as text where a class passes its own on.
@@ -173,6 +180,14 @@ class EventState(_Node, flexbe_core.EventState):
     def requested(self):
         return self.work.preempt_requested()
 
+    def take(self, work):
+        """Take the state of SMACH whose work this is."""
+        self.work, self.native = work, getattr(work, "native", None)
+        if self.native is not None:
+            self._desired_period_ns = self.native._desired_period_ns
+            self.native.set_name(self.name)
+            self.native.set_parent(self.parent)
+
     def request(self):
         self.tell("preempt")
         self.work.request_preempt()
@@ -183,11 +198,17 @@ class EventState(_Node, flexbe_core.EventState):
     def on_enter(self, userdata):
         self.parent.starts(self)
         self.tell("enter")
+        if self.native is not None:
+            self.is_left = False
+            self._call(self.native.on_enter)
+            return
         self.visit = _Visit(self, self.visit)
         self.visit.start()
 
     def execute(self, userdata):
         """None while the thread runs; then the outcome. Raises the exception of the state."""
+        if self.native is not None:
+            return self._native_outcome()
         if self.visit.is_running:
             return None
         if self.visit.error is not None:
@@ -196,18 +217,71 @@ class EventState(_Node, flexbe_core.EventState):
         return self.visit.outcome
 
     def on_exit(self, userdata):
-        if self.visit.is_running:  # the operator has chosen an outcome
+        if self.native is not None:
+            if not (self.is_left and self.root.requested):  # else FlexBE ends all without it
+                self._call(self.native.on_exit)
+        elif self.visit.is_running:  # the operator has chosen an outcome
             self.visit.is_left = True
             self.request()
 
+    def on_start(self):
+        if self.native is not None:
+            self.native.on_start()
+
     def on_stop(self):
-        if self.visit is not None and self.visit.is_running:
+        if self.native is not None:
+            self.native.on_stop()
+        elif self.visit is not None and self.visit.is_running:
             self.request()
+
+    def on_pause(self):
+        if self.native is not None:
+            self.native.on_pause()
+
+    def on_resume(self, userdata):
+        if self.native is not None:
+            self._call(self.native.on_resume)
+
+    def _native_outcome(self):
+        """One tick of a state of FlexBE: its outcome, or None."""
+        if self.requested:
+            if RENAMED[PREEMPTED] in self.outcomes:
+                self.serve()
+                return RENAMED[PREEMPTED]
+            self.is_left = True
+            return PREEMPTED
+        execute, outcome = type(self.native).execute, None  # without the parts for an operator
+        if not self.has_failed:
+            outcome = self._call(lambda userdata: execute(self.native, userdata))
+        if self.has_failed:
+            self.has_failed = False
+            return self.catches or None
+        outcome = None if outcome == "None" else RENAMED.get(outcome, outcome)
+        if outcome is None or outcome in self.outcomes:
+            return outcome
+        Logger.logerr("%r of %s has no transition", outcome, self.path)
+        self._call(self.native.on_exit)
+        self._entering = True
+        return None
+
+    def _call(self, method):
+        """Call a method of the state of FlexBE with its userdata. An exception is logged."""
+        native, parent = self.native, self.parent
+        keys = UserData(reference=parent.userdata, remap=parent.names(self),
+                        input_keys=native.input_keys, output_keys=native.output_keys)
+        try:
+            with keys as userdata:
+                return method(userdata)
+        except Exception as error:
+            self.tell("error", message=f"{type(error).__name__}: {error}")
+            Logger.logerr("%s", traceback.format_exc())
+            self.has_failed = True
+            return None
 
     def _tick(self, userdata):
         self.result = None
         outcome = self._flexbe_execute(userdata)
-        if outcome == PREEMPTED:  # from FlexBE, which has not left the state
+        if outcome == PREEMPTED and not self.is_left:  # from FlexBE, which has not left the state
             PreemptableState.preempt = False
             if self._paused:
                 self._paused = False
@@ -291,6 +365,11 @@ class _Container(_Node):
         """Request a stop of the machine."""
         self.request()
         self.root.wake.set()
+
+    def confirm(self, name, number):
+        """Prepare the states for a run. FlexBE tells them of it."""
+        self._set_up_states()
+        super().confirm(name, number)
 
     def wait(self, seconds=None):
         """Wait until a state has ended, at most for a time in s."""
@@ -376,7 +455,7 @@ class _Container(_Node):
                 state.where = f"{container.where}/{self.labels.get(path, state.name)}"
                 state.catches = self.caught.get(path, "")
                 if isinstance(state, EventState):
-                    state.work = self.states[state.where]
+                    state.take(self.states[state.where])
                     continue
                 state.loop, state.join = self.loops.get(path), self.joins.get(path, Join())
                 state._hold(self.values[state.where])
@@ -554,6 +633,8 @@ class ConcurrencyContainer(_Container, flexbe_core.ConcurrencyContainer):
             raise self.errors[0]
         if stopped:
             return RENAMED[PREEMPTED]
+        if self.requested and PREEMPTED in self._returned_outcomes.values():
+            return PREEMPTED
         for outcome, conditions in self._conditions:
             if all(self._returned_outcomes[name] == wanted for name, wanted in conditions):
                 return outcome

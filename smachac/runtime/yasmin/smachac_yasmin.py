@@ -218,7 +218,7 @@ class Native(_Node, State):
     """
 
     def __init__(self, state, inputs=(), outputs=(), catches=""):
-        self.state = state.yasmin
+        self.state = state.native
         State.__init__(self, sorted({*self.state.get_outcomes(), *([catches] if catches else [])}))
         self.declared = (*inputs, *outputs)
         self.catches = catches

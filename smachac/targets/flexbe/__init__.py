@@ -18,6 +18,7 @@ from smachac.targets.flexbe.behavior import Behavior, behavior_text
 from smachac.targets.flexbe.names import names_of, refused
 from smachac.targets.flexbe.package import behavior_package, manifest, state_package
 from smachac.targets.flexbe.states import state_classes, state_text
+from smachac.targets.native import WRAPPER, as_python, native_types
 from smachac.targets.python import TARGET as PYTHON
 from smachac.targets.python import ros
 from smachac.targets.python.package import package_name
@@ -35,7 +36,9 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     options = {name: value for name, value in context.options.items() if name != "package"}
     options["standalone"] = "true"
     found: Report = [*refused(machine)]
-    files = PYTHON.emit(machine, replace(context, options=options), found)
+    native = native_types(machine, "flexbe")
+    inside = replace(context, options=options, wrappers=dict.fromkeys(native, WRAPPER))
+    files = PYTHON.emit(as_python(machine, native), inside, found)
     report.extend(in_order(found))
     if has_errors(found):
         return {}

@@ -17,6 +17,7 @@ from smachac.frontend.errors.references import template_error
 from smachac.frontend.resolved_script import TIMER
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import (
+    NATIVE,
     Concurrence,
     Container,
     Data,
@@ -478,8 +479,8 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
         has_code = type_.code or type_.classes
         way = f"add `{named}` to the `code`" if has_code else f"write `code: {{{named}}}`"
         help = f"add the template `{code}`, or {way} in `{leaf.type}.yml`"
-        if "yasmin" in type_.code:
-            help = f"it is a class of YASMIN: build it with `--target yasmin`, or {way}"
+        for target in NATIVE.keys() & type_.code.keys():
+            help = f"it is a class of {NATIVE[target]}: build it with `--target {target}`, or {way}"
         package, _, class_ = code.rpartition(".")
         if package and not code.endswith((".py", ".tpl")):
             help = f'write `code: {{python: "{package}:{class_}"}}` in `{leaf.type}.yml`'

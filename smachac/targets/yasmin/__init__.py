@@ -7,18 +7,17 @@ prints them, package.py the files of a package of ROS 2.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from smachac.diagnostics.diagnostic import Report, has_errors, in_order
 from smachac.ir.nodes import Checked
 from smachac.records import replace
 from smachac.targets import BuildContext, Files, Target, made_by, stem
 from smachac.targets.errors import hiding_file, unsupported_by_target
+from smachac.targets.native import WRAPPER, as_python, native_types
 from smachac.targets.python import TARGET as PYTHON
 from smachac.targets.python.formatter import WIDTH, docstring_lines, string
 from smachac.targets.python.package import package_name
 from smachac.targets.yasmin.package import package_files
-from smachac.targets.yasmin.structure import CLASSES, built, native_types, refused
+from smachac.targets.yasmin.structure import CLASSES, built, refused
 
 RUNTIME = "smachac_yasmin.py"
 
@@ -35,9 +34,9 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     options = {name: value for name, value in context.options.items() if name != "package"}
     options["standalone"] = "true"
     found: Report = [*refused(machine)]
-    native = native_types(machine)
-    inside = replace(context, options=options, wrappers=dict.fromkeys(native, "state_of_yasmin"))
-    files = PYTHON.emit(_as_python(machine, native), inside, found)
+    native = native_types(machine, "yasmin")
+    inside = replace(context, options=options, wrappers=dict.fromkeys(native, WRAPPER))
+    files = PYTHON.emit(as_python(machine, native), inside, found)
     report.extend(in_order(found))
     if has_errors(found):
         return {}
@@ -53,16 +52,6 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     module = module_text(machine, program.removesuffix(".py"), package)
     modules = {f"{stem(machine)}_yasmin.py": module, **files}
     return package_files(machine, package, modules, text) if package else modules
-
-
-def _as_python(machine: Checked, native: Mapping[str, str]) -> Checked:
-    """The machine for the Python target, in which a class of YASMIN is the code of its state type.
-    The keys of such a state are no arguments of its class."""
-    types = dict(machine.state_types)
-    for name, code in native.items():
-        given = types[name].given - {"input_keys", "output_keys", "outcomes"}
-        types[name] = replace(types[name], code={"python": code}, given=given, class_facts=None)
-    return Checked(replace(machine, state_types=types))
 
 
 def _package(machine: Checked, context: BuildContext) -> str:

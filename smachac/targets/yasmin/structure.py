@@ -20,6 +20,7 @@ from smachac.ir.nodes import (
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import containers, leads_to_child, outcome_names, remapping, walk
 from smachac.targets.errors import unsupported_by_target
+from smachac.targets.native import native_types
 from smachac.targets.python.formatter import (
     WIDTH,
     Doc,
@@ -61,7 +62,7 @@ def built(machine: Machine) -> list[str]:
     lines = ["states, userdata = parts.states, parts.userdata"]
     reached = {path: _reached(node) for path, node in containers(machine.root)}
     with deep_recursion():
-        native = frozenset(native_types(machine))
+        native = frozenset(native_types(machine, "yasmin"))
         lines += _container(machine.root, machine.root.name, "", fresh, variables, reached, native)
     return [*lines, f"return {variables[machine.root.name]}"]
 
@@ -118,12 +119,6 @@ def _container(
         first = next(child.name for child in node.children if child.name in reached[path])
         if node.initial != first:
             yield f"{variable}.set_start_state({string(_state_name(node, node.initial))})"
-
-
-def native_types(machine: Machine) -> dict[str, str]:
-    """The classes of YASMIN that interfaces name, by state type."""
-    return {name: type_.code["yasmin"] for name, type_ in machine.state_types.items()
-            if "yasmin" in type_.code}  # fmt: skip
 
 
 def keys(node: Node) -> Iterator[tuple[str, Doc]]:
