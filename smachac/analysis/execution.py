@@ -13,6 +13,7 @@ from collections.abc import Container, Iterable, Iterator
 from typing import NamedTuple, TypeAlias
 
 from smachac.ir import nodes
+from smachac.ir.concurrence_rules import matching_rule, outcome_of
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Concurrence, Leaf, Node, StateMachine
 from smachac.ir.outcome_names import PREEMPTED
@@ -345,7 +346,10 @@ class _Turn:
         """Stop the other branches if this one's end requires it; whether they are being stopped."""
         container = self.run.nodes[node]
         assert isinstance(container, Concurrence)
-        if stopping or (container.join != "any" and branches[at] != (None,)):
+        decides = container.join == "any" or branches[at] == (None,)
+        if container.join == "rule":
+            decides = decides or matching_rule(container, self.ends(node, branches)) >= 0
+        if stopping or not decides:
             return stopping
         if node not in self.asked:
             for child, branch in zip(self.run.children[node], branches, strict=True):
@@ -368,15 +372,13 @@ class _Turn:
         if stopped:
             self.asked.discard(node)
             return self.ended(node, PREEMPTED)
-        names = (self.run.nodes[child].name for child in self.run.children[node])
-        results = [branch[0] for branch in branches if isinstance(branch, tuple) and branch]
-        ends = dict(zip(names, results, strict=True))
-        best, most = container.default_outcome, 0
-        for rule in container.rules:
-            holds = all(ends.get(condition.child) == condition.outcome for condition in rule.when)
-            if holds and len(rule.when) >= most:
-                best, most = rule.outcome, len(rule.when)
-        return self.ended(node, best)
+        return self.ended(node, outcome_of(container, self.ends(node, branches)))
+
+    def ends(self, node: int, branches: list[Control]) -> dict[str, object]:
+        """The outcomes of the branches of a concurrence that have ended, by name."""
+        pairs = zip(self.run.children[node], branches, strict=True)
+        return {self.run.nodes[child].name: branch[0] for child, branch in pairs
+                if isinstance(branch, tuple) and len(branch) == 1}  # fmt: skip
 
     def recall(self, node: int) -> None:
         """Withdraw the requests of a state and of all states below it."""

@@ -205,6 +205,25 @@ class SoundConcurrence:
         return [number for number in found if len(self.rules.conditions[number]) == most]
 
 
+def rules_of(node: Concurrence) -> Rules:
+    """The rules of a concurrence, by number."""
+    return Rules({condition.child: condition.outcome for condition in rule.when}
+                 for rule in node.rules)  # fmt: skip
+
+
+def without_end(node: Concurrence, rules: Rules) -> Combination | None:
+    """A combination of outcomes after which no rule of a concurrence with `join: rule` holds, where
+    it has no default outcome and its branches have interfaces."""
+    domains = {child.name: outcome_names(child) for child in node.children}
+    known = all(part.child in domains for one in node.rules for part in one.when)
+    if node.default_outcome or not known or any(map(has_no_interface, node.children)):
+        return None
+    try:
+        return rules.find(domains, {}, rules.all)
+    except UndecidedError:
+        return None
+
+
 def sound_concurrence(path: str, node: Concurrence) -> SoundConcurrence | None:
     """The rules of a concurrence; None if it has no states, two states of one name, or a rule with
     an unknown name, or if it ends with the first rule that holds: any of them can be it."""
@@ -217,8 +236,7 @@ def sound_concurrence(path: str, node: Concurrence) -> SoundConcurrence | None:
     }
     if not all(_is_sound(rule, ends) for rule in node.rules):
         return None
-    conditions = ({one.child: one.outcome for one in rule.when} for rule in node.rules)
-    return SoundConcurrence(path, node, children, node.rules, Rules(conditions))
+    return SoundConcurrence(path, node, children, node.rules, rules_of(node))
 
 
 def _is_sound(rule: OutcomeRule, ends: Mapping[str, frozenset[str] | None]) -> bool:

@@ -124,8 +124,10 @@ FIELD_DOCS: Mapping[str, str] = {
     "for_each": "Once for each item of a list or of a userdata key: {item: wp, in: waypoints}.",
     "callbacks": "Code over userdata, by the name of the key or outcome it is for.",
     "default_outcome": "What it ends with when no rule holds.",
-    "outcome_map": "The rules of a concurrence: {outcome: {CHILD: outcome of the child}}.",
-    "join": "all: wait for every child. any: preempt the rest when the first has ended.",
+    "outcome_map": "The rules of a concurrence: {outcome: {CHILD: outcome of the child}}."
+    " As a list, several rules can have one outcome: [{outcome: {CHILD: outcome of the child}}].",
+    "join": "all: wait for every child. any: preempt the rest when the first has ended."
+    " rule: preempt the rest when the first rule holds.",
     "initial": "The state to begin with.",
     "forever": "It is meant to loop without an end.",
     "on_error": "Where an exception in one of the states leads: a state, or an outcome.",
@@ -140,7 +142,7 @@ FIELD_DOCS: Mapping[str, str] = {
 }
 """The descriptions of the fields, for editors."""
 
-FIELD_CHOICES: Mapping[str, tuple[str, ...]] = {"join": ("all", "any")}
+FIELD_CHOICES: Mapping[str, tuple[str, ...]] = {"join": ("all", "any", "rule")}
 """The values of fields that have few."""
 
 FIELD_DEFAULTS: Mapping[str, str] = {

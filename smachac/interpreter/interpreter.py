@@ -36,7 +36,7 @@ from smachac.interpreter.userdata import (
     trace_value,
 )
 from smachac.ir import nodes
-from smachac.ir.concurrence_rules import outcome_of
+from smachac.ir.concurrence_rules import matching_rule, outcome_of
 from smachac.ir.nodes import (
     Concurrence,
     Container,
@@ -441,7 +441,8 @@ def _concurrence(
         ended[children[turn].name] = end
         if isinstance(end, RunFailure) and end.kind == "no-end":
             break
-        if not stopping and (node.join == "any" or isinstance(end, RunFailure)):
+        decides = node.join == "any" or (node.join == "rule" and matching_rule(node, ended) >= 0)
+        if not stopping and (decides or isinstance(end, RunFailure)):
             stopping = True
             if path not in run.preemption.requested:  # else every branch has a request already
                 for other in live:

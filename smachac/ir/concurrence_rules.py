@@ -11,15 +11,12 @@ from smachac.ir.nodes import Concurrence, OutcomeRule
 def matching_rule(node: Concurrence, ended: Mapping[str, object]) -> int:
     """The number of the rule that determines the outcome, or -1 for the default outcome.
 
-    `ended` has the outcome of each branch by name. Of the rules that match, the one with most
-    conditions applies, and the last one if several have as many.
+    `ended` has the outcome of each branch by name, at least of those that have ended.
     """
-    best, most = -1, 0
-    for number, rule in enumerate(node.rules):
-        holds = all(ended.get(one.child) == one.outcome for one in rule.when)
-        if holds and len(rule.when) >= most:
-            best, most = number, len(rule.when)
-    return best
+    for number in _numbers(node):
+        if all(ended.get(one.child) == one.outcome for one in node.rules[number].when):
+            return number
+    return -1
 
 
 def outcome_of(node: Concurrence, ended: Mapping[str, object]) -> str:
@@ -30,6 +27,13 @@ def outcome_of(node: Concurrence, ended: Mapping[str, object]) -> str:
 
 def by_priority(node: Concurrence) -> list[OutcomeRule]:
     """The rules by priority: the first of them that matches determines the outcome."""
-    numbered = enumerate(node.rules)
-    found = sorted(numbered, key=lambda pair: (len(pair[1].when), pair[0]), reverse=True)
-    return [rule for _, rule in found]
+    return [node.rules[number] for number in _numbers(node)]
+
+
+def _numbers(node: Concurrence) -> list[int]:
+    """The numbers of the rules by priority: those with more conditions first, and of those with as
+    many the last one; with `join: rule` in their order."""
+    numbers = [*range(len(node.rules))]
+    if node.join == "rule":
+        return numbers
+    return sorted(numbers, key=lambda number: (len(node.rules[number].when), number), reverse=True)

@@ -338,9 +338,8 @@ class Concurrence(_Container):
     container.
 
     `join`: "all" waits for every child, "any" preempts the others when the first child ends. Of
-    several matching rules the one with most conditions applies. "rule", of machines for FlexBE:
-    the first rule in their order that matches what has ended applies at once, and the other
-    children are stopped; there is no default outcome.
+    several matching rules the one with most conditions applies. "rule" preempts the others when the
+    first rule matches what has ended; of several matching rules the first in their order applies.
     """
 
     keyword: ClassVar[str] = "concurrence"

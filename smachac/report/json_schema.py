@@ -53,7 +53,13 @@ SHAPES: Mapping[str, Schema] = {
     "items": {"type": ["array", "string"]},
     "map": {"type": "object"},
     "pairs": {"type": "object", "additionalProperties": {"$ref": "#/definitions/name"}},
-    "rules": {"type": "object", "additionalProperties": {"$ref": "#/definitions/pairs"}},
+    "rules": {
+        "anyOf": [
+            {"$ref": "#/definitions/rule"},
+            {"type": "array", "items": {"$ref": "#/definitions/rule"}},
+        ]
+    },
+    "rule": {"type": "object", "additionalProperties": {"$ref": "#/definitions/pairs"}},
     "keys": {
         "anyOf": [
             {"$ref": "#/definitions/names"},

@@ -8,10 +8,13 @@ from smachac.analysis.context import Context
 from smachac.analysis.control_flow import has_no_interface
 from smachac.analysis.outcome_rules import (
     Combination,
+    Rules,
     SoundConcurrence,
     Space,
     UndecidedError,
     bits,
+    rules_of,
+    without_end,
     without_other,
 )
 from smachac.analysis.possible_outcomes import Judged
@@ -416,32 +419,42 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
         if node.default_outcome and not node.rules:
             continue
         missed = _missed(judged)
-        if missed is None:
-            continue
-        needed = rules.shown(missed, {}, rules.all)
-        shown = written(needed) or "any combination"
-        if node.default_outcome:
-            severity, span = Severity.INFO, node.default_span
-            message = f"no rule of `{node.name}` matches {shown}: it ends with the default outcome"
-            message += f" `{node.default_outcome}`"
-            rule = notation.rule(node, "OUTCOME", needed.items())
-            help = f"if another outcome is meant, add a rule for it, as in `{rule}`"
-            effect = ""
-        else:
-            severity, span = Severity.ERROR, node.span
-            effect = None
-            message = f"no rule of `{node.name}` matches {shown}, and `default_outcome` is missing"
-            help = _covering(node, needed)
-        yield Finding(
-            span=span,
-            message=message,
-            arguments=_names(needed),
-            help=help,
-            effect=effect,
-            related=calls(node, span),
-            severity=severity,
-            node=judged.path,
-        )
+        if missed is not None:
+            yield _uncovered(judged.path, node, rules, missed)
+    for path, container in context.containers:
+        if isinstance(container, Concurrence) and container.join == "rule":
+            rules = rules_of(container)
+            missed = without_end(container, rules)
+            if missed is not None:
+                yield _uncovered(path, container, rules, missed)
+
+
+def _uncovered(path: str, node: Concurrence, rules: Rules, missed: Combination) -> Finding:
+    """The finding about a combination of outcomes that no rule matches."""
+    needed = rules.shown(missed, {}, rules.all)
+    shown = written(needed) or "any combination"
+    if node.default_outcome:
+        severity, span = Severity.INFO, node.default_span
+        message = f"no rule of `{node.name}` matches {shown}: it ends with the default outcome"
+        message += f" `{node.default_outcome}`"
+        rule = notation.rule(node, "OUTCOME", needed.items())
+        help = f"if another outcome is meant, add a rule for it, as in `{rule}`"
+        effect = ""
+    else:
+        severity, span = Severity.ERROR, node.span
+        effect = None
+        message = f"no rule of `{node.name}` matches {shown}, and `default_outcome` is missing"
+        help = _covering(node, needed)
+    return Finding(
+        span=span,
+        message=message,
+        arguments=_names(needed),
+        help=help,
+        effect=effect,
+        related=calls(node, span),
+        severity=severity,
+        node=path,
+    )
 
 
 MOST_WIDENED = 3

@@ -381,6 +381,7 @@ def _with_implicit(child: Node, outcomes: frozenset[str]) -> Node:
 
 def _concurrence(state: State, fields: dict[str, Any], children: tuple[Node, ...]) -> Concurrence:
     default = state.default_outcome or Word("", state.name.span)
+    join = _text(state.join)
     endings: dict[str, list[Word]] = {}
     for _, conditions in state.outcome_map:
         for name, ending in conditions:
@@ -395,7 +396,7 @@ def _concurrence(state: State, fields: dict[str, Any], children: tuple[Node, ...
             _outcome_rule(outcome, conditions, children)
             for outcome, conditions in state.outcome_map
         ),
-        join="any" if _text(state.join) == "any" else "all",
+        join="rule" if join == "rule" else "any" if join == "any" else "all",
     )
 
 

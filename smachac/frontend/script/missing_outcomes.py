@@ -33,9 +33,10 @@ def outcomes_used(entries: Mapping[str, Entry]) -> tuple[Outcome, ...]:
 
 
 def _keys(entry: Entry | None) -> Iterator[Word]:
-    """The keys of a mapping that are names."""
-    if entry is not None and isinstance(entry.value, Map):
-        words = (name_of(item.key) for item in entry.value.entries)
+    """The keys of a mapping, or of the mappings in a list, that are names."""
+    value = entry.value if entry is not None else None
+    for part in value.items if isinstance(value, Seq) else (value,):
+        words = (name_of(item.key) for item in part.entries) if isinstance(part, Map) else ()
         yield from (word for word in words if word is not None)
 
 

@@ -71,6 +71,7 @@ SHAPES = {
     "items": ("a list or the name of a key", "write it as `[a, b]`, or name a key with a list"),
     "map": ("a mapping", "write it as `{name: value}`"),
     "conditions": ("a mapping", "write it as `{STATE: OUTCOME}`"),
+    "rule": ("one rule", "write it as `{OUTCOME: {STATE: OUTCOME}}`"),
     "text": ("a text", "write it in quotes: `'...'`"),
     "flag": ("`true` or `false`", "write `true` or `false`, without quotes"),
     "duration": ("a duration", "write it as `20s`, `500ms`, `1.5min` or `1h`"),
@@ -424,7 +425,10 @@ def as_items(tree: Tree, report: Report) -> Value:
 
 
 def as_rules(tree: Tree, report: Report) -> Rules:
-    """A mapping of names to mappings of names to names: an outcome map."""
+    """A mapping of names to mappings of names to names: an outcome map. As a list, each item has
+    one rule, so that several can have one outcome."""
+    if isinstance(tree, Seq):
+        return tuple(rule for item in tree.items for rule in _one_rule(item, report))
     rules = []
     for entry in as_map(tree, report):
         key = name_of(entry.key)
@@ -436,6 +440,14 @@ def as_rules(tree: Tree, report: Report) -> Rules:
             nothing = Word("", key.span)
             rules.append((key, ((nothing, nothing),)))
     return tuple(rules)
+
+
+def _one_rule(item: Tree, report: Report) -> Rules:
+    """The rule of an item of a list."""
+    found = as_rules(item, report) if isinstance(item, Map) else ()
+    if len(found) != 1:
+        wrong(item, "rule", report)
+    return found
 
 
 def as_keys(tree: Tree, report: Report) -> Keys:

@@ -205,12 +205,25 @@ def _of_fields(part: Part, owner: str) -> float:
         elif name in _NAMES and value.kind != "text":
             cost += _of_names(value)
         elif name == "outcome_map" and value.kind != "text":
-            cost += sum(1.0 if part is None or (part.kind == "text" and part.value[0] not in "{*[")
-                        else 0.0 if part.kind == "text" else _of_names(part)
-                        for _, part in value.entries)  # fmt: skip
+            cost += sum(_of_rules(item) for item in _rules(value))
         elif name in VARIABLES and value.kind != "text" and VARIABLES[name].shape == "name":
             cost += 1
     return cost
+
+
+def _rules(part: Part) -> Iterator[Part]:
+    """The mappings of an outcome map: the only one, or those of a list."""
+    if part.kind != "list":
+        yield part
+        return
+    yield from (item for _, item in part.entries if item is not None and item.kind != "text")
+
+
+def _of_rules(part: Part) -> float:
+    """The cost of a mapping of names to mappings of names to names."""
+    return sum(1.0 if inner is None or (inner.kind == "text" and inner.value[0] not in "{*[")
+               else 0.0 if inner.kind == "text" else _of_names(inner)
+               for _, inner in part.entries)  # fmt: skip
 
 
 def _of_names(part: Part) -> float:

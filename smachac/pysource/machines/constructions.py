@@ -135,9 +135,8 @@ class Callbacks:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Constructions:
     """The constructions of the states of a machine, the values that their userdata has first, the
-    items of iterators, the callbacks of concurrences, and the levels of autonomy that outcomes need,
-    each by the path of names. `noted` are
-    the calls that have an effect which is no part of a graph, by their names, `shared` the paths of
+    items of iterators, the callbacks of concurrences, and the outcomes for which an operator has to
+    decide, with the levels of autonomy, each by the path of names. `noted` are the calls that have an effect which is no part of a graph, by their names, `shared` the paths of
     states that are one object with the state of an earlier path, and their places. `modules` are
     those that the classes and the code need, each with the folder in which Python has to search
     it. `ros` is the version of ROS of the programs; 0: none. `one_rule`: a concurrence of

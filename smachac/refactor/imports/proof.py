@@ -109,7 +109,8 @@ def _different_rules(
         if any(name == "outcome_cb" for name, _ in callbacks.lost):
             yield f"{path}: `outcome_cb` was not taken over"
         else:
-            yield from _unequal(path, "rules", {*_rules(python)}, {*_rules(script)})
+            order = list if python.join == "rule" else set
+            yield from _unequal(path, "rules", order(_rules(python)), order(_rules(script)))
             yield from _unequal(
                 path, "the default outcome", python.default_outcome, script.default_outcome
             )

@@ -96,8 +96,6 @@ def _machines(built: Sequence[Built]) -> tuple[list[PythonMachine], list[Incompl
 
 def _refusals(graph: Graph, constructions: Constructions) -> tuple[tuple[Span, str], ...]:
     """The places of what no script can have, each with the reason."""
-    if not graph.framework.code:
-        return ((graph.machine.root.span, f"machines for {graph.framework.name} are not imported"),)
     found = {(made.span, f"`{names[-1]}`: {made.refusal}"): None
              for names, made in constructions.states.items() if made.refusal}  # fmt: skip
     return tuple(found)

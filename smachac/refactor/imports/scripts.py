@@ -8,6 +8,7 @@ import re
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from pathlib import Path
 
+from smachac.analysis.outcome_rules import rules_of, without_end
 from smachac.diagnostics.source import Span
 from smachac.frontend import schema
 from smachac.ir.nodes import (
@@ -62,7 +63,7 @@ _NOTED = {
     "add_input_key": (
         "the default value of a key", "write it in `userdata`, or in the constructor of the class"
     ),
-    PRIORITY: ("the priority of the container", "pause the other states of the concurrence in code"),
+    PRIORITY: ("the priority of the container", "pause the other states in their code"),
     BLACKBOARD: ("the values of the blackboard", "write them in `userdata` of the script"),
 }  # fmt: skip
 """What is not taken over of calls that do not register functions, and what to do, by name."""
@@ -244,6 +245,11 @@ class _Writer:
         self, names: Names, node: Node, parent: Container, scope: _Scope, indent: str
     ) -> list[str]:
         inside = f"{indent}    "
+        levels = self.machine.constructions.autonomy.get(names, {})
+        if levels:
+            shown = ", ".join(f"`{outcome}` {level}" for outcome, level in levels.items())
+            self.lose(node.span, f"the autonomy of `{node.name}`: {shown}",
+                      "the programs have the level Off: no operator has to decide")  # fmt: skip
         connections = _connections(node, parent)
         states: list[str] = []
         if isinstance(node, Leaf):
@@ -362,9 +368,13 @@ class _Writer:
         if default:
             fields["default_outcome"] = name_text(default)
         if rules:
-            fields["outcome_map"] = _rules_text(rules)
-        if node.join == "any":
-            fields["join"] = "any"
+            fields["outcome_map"] = _rules_text(rules, listed=node.join == "rule")
+        if node.join != "all":
+            fields["join"] = node.join
+        if node.join == "rule" and (ended := without_end(node, rules_of(node))) is not None:
+            states = ", ".join(f"`{child}` {outcome}" for child, outcome in ended.items())
+            self.lose(node.span, f"after {states} no condition of `{node.name}` holds: FlexBE does"
+                      " not end it", "add a rule, or a `default_outcome`")  # fmt: skip
         return fields
 
     def iterator_fields(self, names: Names, node: Iterator, scope: _Scope) -> dict[str, str]:
@@ -456,14 +466,13 @@ def selected(rules: Rules, default: str, pairs: Outcomes) -> str | None:
     return default if not best else best[0] if len(best) == 1 else None
 
 
-def _rules_text(rules: Rules) -> str:
-    """The outcome map."""
-    return mapping_text(
-        {
-            outcome: mapping_text({child: name_text(name) for child, name in when})
-            for outcome, when in rules
-        }
-    )
+def _rules_text(rules: Rules, *, listed: bool) -> str:
+    """The outcome map; `listed`: as a list, as several rules can have one outcome."""
+    texts = [(outcome, mapping_text({child: name_text(name) for child, name in when}))
+             for outcome, when in rules]  # fmt: skip
+    if not listed:
+        return mapping_text(dict(texts))
+    return f"[{', '.join(mapping_text({outcome: text}) for outcome, text in texts)}]"
 
 
 def settings(folders: Iterable[str], ros: int) -> str:

@@ -49,12 +49,14 @@ class Join:
     """The end of a concurrence beside its conditions, of which the first one that holds decides.
 
     `default` is the outcome if none does. `first_ends`: the end of one state is a request to stop
-    for the others. `is_limit`: after a request to stop the outcome is `preempted`.
+    for the others. `rule_ends`: so is the end after which a condition holds. `is_limit`: after a
+    request to stop the outcome is `preempted`.
     """
 
     default: str | None = None
     first_ends: bool = False
     is_limit: bool = False
+    rule_ends: bool = False
 
 
 class Keys:
@@ -154,10 +156,10 @@ class _Node:
 class EventState(_Node, flexbe_core.EventState):
     """A state with SMACH's interface (`work`) as a state of FlexBE: a thread runs it.
 
-    `native` is the state of FlexBE in `work`, if there is one. Its methods run as they are, with its
-    own keys: an exception is logged, and it stays active, unless the script has a transition for
-    that. After a request to stop it is left (`is_left`): it has no outcome of its own, but that of
-    FlexBE, which ends all containers around it up to the one from which the request comes.
+    `native` is the state of FlexBE in `work`, if there is one. Its methods run as they are, with
+    its own keys: an exception is logged, and it stays active, unless the script has a transition
+    for that. After a request to stop it is left (`is_left`): it has no outcome of its own, but that
+    of FlexBE, which ends all containers around it up to the one that has sent the request.
     """
 
     work = native = None
@@ -614,7 +616,9 @@ class ConcurrencyContainer(_Container, flexbe_core.ConcurrencyContainer):
                 self._returned_outcomes[state.name] = outcome
             else:
                 self.errors.append(error)
-            if (self.join.first_ends or error is not None) and not self.stopping:
+            decides = self.join.first_ends
+            decides = decides or (self.join.rule_ends and self._decided() is not None)
+            if (decides or error is not None) and not self.stopping:
                 self.stopping = True
                 if not self.requested:
                     for other in tuple(self.running):
@@ -635,10 +639,16 @@ class ConcurrencyContainer(_Container, flexbe_core.ConcurrencyContainer):
             return RENAMED[PREEMPTED]
         if self.requested and PREEMPTED in self._returned_outcomes.values():
             return PREEMPTED
+        outcome = self._decided()
+        return self.join.default if outcome is None else outcome
+
+    def _decided(self):
+        """The outcome of the first condition that holds, or None."""
+        ended = self._returned_outcomes
         for outcome, conditions in self._conditions:
-            if all(self._returned_outcomes[name] == wanted for name, wanted in conditions):
+            if all(ended.get(name) == wanted for name, wanted in conditions):
                 return outcome
-        return self.join.default
+        return None
 
 
 class _All:

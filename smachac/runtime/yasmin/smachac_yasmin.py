@@ -438,15 +438,16 @@ class Concurrence(_Container, State):
 
     `rules` are pairs of an outcome and its conditions, outcomes by the name of a state; the first
     rule that holds decides, else `default`. `first_ends`: the end of one state is a request to stop
-    for the others. `is_limit`: after a request to stop the outcome is `preempted`.
+    for the others. `rule_ends`: so is the end after which a rule holds. `is_limit`: after a request
+    to stop the outcome is `preempted`.
     """
 
     def __init__(self, path, outcomes, rules=(), default=None, first_ends=False, is_limit=False,
-                 inputs=(), outputs=(), userdata=(), catches=""):  # fmt: skip
+                 rule_ends=False, inputs=(), outputs=(), userdata=(), catches=""):  # fmt: skip
         State.__init__(self, list(outcomes))
         self.set_up(path, inputs, outputs, userdata, catches)
         self.rules, self.default = rules, default
-        self.first_ends, self.is_limit = first_ends, is_limit
+        self.first_ends, self.is_limit, self.rule_ends = first_ends, is_limit, rule_ends
 
     def add(self, name, state, remapping=()):
         """Add a state."""
@@ -485,7 +486,8 @@ class Concurrence(_Container, State):
                     ended[name] = outcome
                 else:
                     errors.append(error)
-                if (self.first_ends or error is not None) and not stopping:
+                decides = self.first_ends or (self.rule_ends and self._rule(ended) is not None)
+                if (decides or error is not None) and not stopping:
                     stopping = True
                     if not self.requested:
                         for other in tuple(self.running):
@@ -515,10 +517,15 @@ class Concurrence(_Container, State):
     def _outcome(self, ended):
         if None in ended:
             return ended[None]
+        outcome = self._rule(ended)
+        return self.default if outcome is None else outcome
+
+    def _rule(self, ended):
+        """The outcome of the first rule that holds, or None."""
         for outcome, conditions in self.rules:
-            if all(ended[name] == wanted for name, wanted in conditions.items()):
+            if all(ended.get(name) == wanted for name, wanted in conditions.items()):
                 return outcome
-        return self.default
+        return None
 
 
 class Repeat(_Container, State):

@@ -150,6 +150,10 @@ def plan(machine: Machine, bounds: Bounds | None = None, names: RecordNames | No
         scope = replace(scope, shared=_shared(scope, around, written, path in catching))
         scopes[path] = scope
         _check(found, scope, around)
+        if isinstance(node, Concurrence) and node.join == "rule":
+            text = "a concurrence that ends with its first rule (`join: rule`)"
+            help = "write `join: any` or `join: all`"
+            found.refuse(node.span, UnportableError(text, help=help), node.name)
     return found
 
 

@@ -372,7 +372,7 @@ def _loop(node: nodes.Iterator) -> Iterator[tuple[str, Doc]]:
 def _join(node: Concurrence) -> Iterator[tuple[str, Doc]]:
     if node.default_outcome:
         yield "default=", string(outcome(node.default_outcome))
-    if node.join == "any":
-        yield "first_ends=", "True"
+    if node.join != "all":
+        yield "first_ends=" if node.join == "any" else "rule_ends=", "True"
     if node.sugar:
         yield "is_limit=", "True"

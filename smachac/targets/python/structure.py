@@ -8,12 +8,14 @@ from collections.abc import Callable, Iterable, Iterator
 from keyword import iskeyword
 
 from smachac.diagnostics.source import assert_never
+from smachac.ir.concurrence_rules import by_priority
 from smachac.ir.nodes import (
     Concurrence,
     Container,
     Data,
     Key,
     Node,
+    OutcomeRule,
     Sequence,
     StateMachine,
     Transition,
@@ -101,12 +103,14 @@ def construct(
     both = isinstance(node, IteratorNode)
     arguments += key_arguments(node.inputs, node.outputs, both=both)
     if isinstance(node, Concurrence):
-        if len({rule.outcome for rule in node.rules}) < len(node.rules):
+        is_map = len({rule.outcome for rule in node.rules}) == len(node.rules)
+        if not is_map or node.join == "rule":
             arguments.append(("outcome_cb=", _outcome_function(node)))
         elif node.rules:
             arguments.append(("outcome_map=", _outcome_map(node)))
-        if node.join == "any":
-            arguments.append(("child_termination_cb=", "lambda outcomes: True"))
+        if node.join != "all":
+            ends = "True" if node.join == "any" else _holds(node)
+            arguments.append(("child_termination_cb=", f"lambda outcomes: {ends}"))
     head = f"{variable} = "
     made = call(f"smach.{kind(node)}", arguments)
     return head + _with_comment(made, note, width(depth), len(head))
@@ -151,12 +155,22 @@ def _outcome_map(node: Concurrence) -> Group:
 def _outcome_function(node: Concurrence) -> str:
     """The rules as a function, for an outcome with several rules: a map holds one rule each."""
     text = "None"
-    for rule in sorted(node.rules, key=lambda rule: len(rule.when)):
-        holds = " and ".join(
-            f"ended[{string(one.child)}] == {string(one.outcome)}" for one in rule.when
-        )
-        text = f"{string(rule.outcome)} if {holds or True} else {text}"
+    for rule in reversed(by_priority(node)):
+        holds = _conditions(rule, "ended[{}] == {}") or True
+        text = f"{string(rule.outcome)} if {holds} else {text}"
     return f"lambda ended: {text}"
+
+
+def _holds(node: Concurrence) -> str:
+    """The code for whether a rule holds while branches run, which have no outcome."""
+    rules = (_conditions(rule, "outcomes.get({}) == {}") for rule in node.rules)
+    return " or ".join(f"({holds or True})" for holds in rules) or "False"
+
+
+def _conditions(rule: OutcomeRule, form: str) -> str:
+    """The code of the conditions of a rule, each of a form with a branch and its outcome."""
+    pairs = ((string(one.child), string(one.outcome)) for one in rule.when)
+    return " and ".join(form.format(*pair) for pair in pairs)
 
 
 def userdata(variable: str, depth: int, presets: Iterable[tuple[str, Doc]]) -> list[str]:

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from smachac.diagnostics.source import NOWHERE, assert_never
 from smachac.ir import nodes
 from smachac.ir.concurrence_rules import by_priority
-from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine
+from smachac.ir.nodes import Concurrence, Container, Leaf, Node, OutcomeRule, StateMachine
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import outcome_names
 from smachac.targets import COMMENT_WIDTH, comment_lines
@@ -201,11 +201,15 @@ def _concurrence(plan: Plan, path: str, node: Concurrence) -> Element:
 
 
 def _end(plan: Plan, path: str, node: Concurrence, where: str, child: Node) -> Element:
-    """The end of a branch: under `join: any`, and after an exception, the others get a request."""
+    """The end of a branch: under `join: any`, if a rule holds under `join: rule`, and after an
+    exception, the others get a request."""
     wrapped = isinstance(child, Leaf | Concurrence)
     region = plan.extra(where, "branch") if wrapped else plan.ids[where]
     failed = plan.failed(where)
-    stop = "true" if node.join == "any" else f"In({js_string(failed)})" if failed else "false"
+    tests = [f"In({js_string(failed)})"] if failed else []
+    if node.join == "rule":
+        tests += [f"({_guard(plan, path, rule)})" for rule in node.rules]
+    stop = "true" if node.join == "any" else " || ".join(tests) or "false"
     given = f"{js_string(plan.ids[path])}, {js_string(plan.ids[where])}, {stop}"
     if stop == "false":
         return element("transition", script(f"end({given});"), event=f"done.state.{region}")
@@ -229,13 +233,18 @@ def _joined(plan: Plan, path: str, node: Concurrence) -> Iterator[Element]:
         served = script(f"delete {requested(id)};")
         yield from _outcome(plan, path, node, PREEMPTED, requested(id), [join, served])
     for rule in by_priority(node):
-        tests = [
-            f"In({js_string(plan.final(f'{path}/{one.child}', one.outcome))})" for one in rule.when
-        ]
-        guard = " && ".join(dict.fromkeys(tests))
+        guard = _guard(plan, path, rule)
         yield from _outcome(plan, path, node, rule.outcome, guard, [join])
     if node.default_outcome:  # without one, the rules cover every combination
         yield from _outcome(plan, path, node, node.default_outcome, "", [join])
+
+
+def _guard(plan: Plan, path: str, rule: OutcomeRule) -> str:
+    """The condition that a rule holds: final states of branches."""
+    tests = [
+        f"In({js_string(plan.final(f'{path}/{one.child}', one.outcome))})" for one in rule.when
+    ]
+    return " && ".join(dict.fromkeys(tests))
 
 
 def _outcome(

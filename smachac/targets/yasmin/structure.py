@@ -165,8 +165,8 @@ def _rules(node: Concurrence) -> Iterator[tuple[str, Doc]]:
         yield "rules=", Group("[", tuple(("", rule) for rule in rules), "]")
     if node.default_outcome:
         yield "default=", string(node.default_outcome)
-    if node.join == "any":
-        yield "first_ends=", "True"
+    if node.join != "all":
+        yield "first_ends=" if node.join == "any" else "rule_ends=", "True"
     if node.sugar:
         yield "is_limit=", "True"
 
