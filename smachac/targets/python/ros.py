@@ -10,6 +10,7 @@ from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.wording import either
 from smachac.frontend.loader import Library
+from smachac.frontend.types.smacha_meta import extended
 from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import expressions, walk
 from smachac.pysource.ros_names import ROS_VERSIONS, Ros
@@ -170,8 +171,11 @@ def _language(ros: Ros) -> str:
 
 
 def is_node(machine: Machine, library: Library, ros: Ros) -> bool:
-    """Whether a program for ROS 2 is a node: its base is one, or a state gets the node."""
+    """Whether a program for ROS 2 is a node: its base is one, or extends one, or a state gets the
+    node."""
     types = [machine.state_types[name] for name in [machine.base] if name in machine.state_types]
+    if ros == 2 and any(_extends_node(type_, library) for type_ in types):
+        return True
     types += [type_ for type_ in machine.state_types.values() if type_.kind == "state"]
     return any(takes_node(type_, library, ros) for type_ in types)
 
@@ -184,6 +188,15 @@ def may_be_node(machine: Machine, library: Library, ros: Ros) -> bool:
     return machine.base != "Base" or library.own_template("Base.tpl.py") is not None
 
 
+def _extends_node(base: StateType, library: Library) -> bool:
+    """Whether the template of a base extends one of a node, through others of the user."""
+    code, seen = base.code.get("python", f"{base.name}.tpl.py"), set[str]()
+    while code not in seen and (own := library.own_template(code)) is not None:
+        seen.add(code)
+        code = extended(own)
+    return bool(seen) and code not in seen and _is_of_ros2(code, library)
+
+
 def takes_node(type_: StateType, library: Library, ros: Ros) -> bool:
     """Whether the states of a type get the node of ROS 2: the built-in types for ROS 2, and classes
     of the user whose first parameter is `node`."""
@@ -192,6 +205,11 @@ def takes_node(type_: StateType, library: Library, ros: Ros) -> bool:
         return False
     if ":" in code:
         return has_node_parameter(type_)
+    return _is_of_ros2(code, library)
+
+
+def _is_of_ros2(code: str, library: Library) -> bool:
+    """Whether a template is a built-in one for ROS 2."""
     return library.own_template(code) is None and library.template(f"ros2/{code}") is not None
 
 
