@@ -116,6 +116,7 @@ class State(NamedTuple):
     remapping: Pairs = ()
     claims: tuple[Word, ...] = ()
     tags: tuple[Word, ...] = ()
+    autonomy: Pairs = ()
     initial: Word | None = None
     forever: bool = False
     on_error: Word | None = None

@@ -67,6 +67,7 @@ VARIABLES: dict[str, Field] = {
         _row("transitions", "t", "pairs", f"{_CONTAINERS} state"),
         _row("claims", "", "names", f"{_CONTAINERS} state"),
         _row("tags", "", "names", f"{_CONTAINERS} state"),
+        _row("autonomy", "", "pairs", f"{_CONTAINERS} state"),
         _row("timeout", "", "value", f"{_CONTAINERS} state"),
         _row("retry", "", "value", f"{_CONTAINERS} state"),
         _row("for_each", "", "value", f"{_CONTAINERS} state"),
@@ -118,6 +119,8 @@ FIELD_DOCS: Mapping[str, str] = {
     " An outcome without one leaves the container by its own name.",
     "claims": "Resources held while it runs: [arm.left].",
     "tags": "Names for properties: [moves, holds].",
+    "autonomy": "For FlexBE: the level of autonomy that an outcome needs, below which an operator"
+    " decides: {outcome: Low}.",
     "timeout": "A time limit, as `20s`, `500ms`, `1.5min`; it adds the outcome `timeout`."
     " Where the state type has a variable of that name, that is meant.",
     "retry": "Further tries: {on: [aborted], max: 3, delay: 1s}; it adds the outcome `exhausted`.",
@@ -142,8 +145,11 @@ FIELD_DOCS: Mapping[str, str] = {
 }
 """The descriptions of the fields, for editors."""
 
-FIELD_CHOICES: Mapping[str, tuple[str, ...]] = {"join": ("all", "any", "rule")}
-"""The values of fields that have few."""
+FIELD_CHOICES: Mapping[str, tuple[str, ...]] = {
+    "join": ("all", "any", "rule"),
+    "autonomy": ("Off", "Low", "High", "Full"),
+}
+"""The values of fields that have few, or of the entries of such a field."""
 
 FIELD_DEFAULTS: Mapping[str, str] = {
     "join": "all",

@@ -206,6 +206,15 @@ class Transition:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Autonomy:
+    """The level of autonomy of FlexBE that an outcome needs: below it an operator decides."""
+
+    outcome: str
+    level: str
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Remap:
     """A key of a state refers to another key of its container; `to_span` is the place of that."""
 
@@ -243,7 +252,8 @@ class _State:
 
     `keyword` is that of the class in the text form. `type` is the state type (the name of the
     template). `via` are the calls of sub-scripts that lead to the node, outermost first. `inputs`
-    and `outputs` are its userdata keys. `tags` are names for properties. `catches` is the outcome
+    and `outputs` are its userdata keys. `tags` are names for properties, `autonomy` the levels that
+    outcomes need in FlexBE. `catches` is the outcome
     that exceptions in the state become: it is one of `outcomes`, the state's own code never returns
     it, and it is empty if exceptions are not caught. `written` are the fields of the script, for
     templates that print them; empty for all others.
@@ -260,6 +270,7 @@ class _State:
     remaps: tuple[Remap, ...] = ()
     claims: tuple[str, ...] = ()
     tags: tuple[str, ...] = ()
+    autonomy: tuple[Autonomy, ...] = field(default=(), compare=False, repr=False)
     catches: str = ""
     span: Span = field(compare=False, repr=False)
     via: tuple[Span, ...] = field(default=(), compare=False, repr=False)

@@ -406,6 +406,23 @@ def _unknown_outcomes(
     for child in container.children:
         if isinstance(child, Leaf) and child.variables:
             yield from unknown_endings(f"{path}/{child.name}", child)
+        if child.autonomy:
+            yield from _unknown_in_autonomy(f"{path}/{child.name}", child)
+
+
+def _unknown_in_autonomy(path: str, child: Node) -> Iterator[Finding]:
+    """Levels of autonomy for outcomes that a state does not have."""
+    names = [*outcome_names(child), EXCEPTIONS]
+    for one in () if has_no_interface(child) else child.autonomy:
+        if one.outcome not in names:
+            yield Finding(
+                span=one.span,
+                message=f"`{child.name}` has no outcome `{one.outcome}`",
+                arguments=(own_name(child, one.span), one.outcome),
+                help=did_you_mean(guesser(names).unique_match(one.outcome)) or "remove this level",
+                related=calls(child, one.span),
+                node=path,
+            )
 
 
 CATCH_ALL = frozenset(["*", "_", "any", "default", "else", "other", "others", "otherwise"])

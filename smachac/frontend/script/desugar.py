@@ -65,12 +65,14 @@ def _inside(node: Node) -> Node:
     name = node.name
     if not isinstance(node, Leaf) and node.sugar:
         name = _fresh(INNER_NAMES[node.sugar], (name,))
-    return replace(node, name=name, transitions=(), remaps=(), doc="")
+    return replace(node, name=name, transitions=(), remaps=(), autonomy=(), doc="")
 
 
 def _around(node: Node) -> dict[str, Any]:
     """The fields of the container that are those of the state."""
-    fields = ("name", "doc", "inputs", "outputs", "transitions", "remaps", "span", "via")
+    fields = (
+        *("name", "doc", "inputs", "outputs", "transitions", "remaps", "autonomy", "span", "via"),
+    )
     return {name: getattr(node, name) for name in fields}
 
 

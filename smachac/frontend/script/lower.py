@@ -16,6 +16,7 @@ from smachac.frontend.text.fields import Keys, Pairs
 from smachac.ir import nodes
 from smachac.ir.graph import is_unread
 from smachac.ir.nodes import (
+    Autonomy,
     Concurrence,
     Condition,
     Container,
@@ -147,6 +148,7 @@ def _interface(state: State) -> dict[str, Any]:
         "remaps": _remaps(state.remapping) if state.remapping else (),
         "claims": _claims(state) if type_.claims or state.claims else (),
         "tags": tuple([word.text for word in state.tags]) if state.tags else (),
+        "autonomy": _autonomy(state.autonomy) if state.autonomy else (),
         "span": state.name.span,
         "via": state.via,
         "written": state.written,
@@ -156,6 +158,11 @@ def _interface(state: State) -> dict[str, Any]:
 def _remaps(pairs: Pairs) -> tuple[Remap, ...]:
     return tuple([Remap(key=key.text, to=to.text, span=key.span, to_span=to.span)
                   for key, to in pairs])  # fmt: skip
+
+
+def _autonomy(pairs: Pairs) -> tuple[Autonomy, ...]:
+    return tuple(Autonomy(outcome=key.text, level=level.text, span=key.span)
+                 for key, level in pairs)  # fmt: skip
 
 
 def _claims(state: State) -> tuple[str, ...]:

@@ -398,14 +398,21 @@ def _read(key: str, shape: str, entry: Entry, report: Report) -> object:
         wrong(entry.value, "name", report, _one_name(key, entry))
         return None
     value = READERS[shape](entry.value, report)
-    if key in schema.FIELD_CHOICES and isinstance(value, Word) and value.text:
-        choices = schema.FIELD_CHOICES[key]
-        if value.text not in choices:
-            message = f"`{value.text}` is not a value of `{key}`"
-            help = did_you_mean(value.text, choices) or f"use one of {listed(choices)}"
-            arguments = ("choice", key, value.text)
-            report.append(wrong_shape(value.span, message, help, arguments=arguments))
+    choices = schema.FIELD_CHOICES.get(key, ())
+    for word in _chosen(value) if choices else ():
+        if word.text and word.text not in choices:
+            message = f"`{word.text}` is not a value of `{key}`"
+            help = did_you_mean(word.text, choices) or f"use one of {listed(choices)}"
+            arguments = ("choice", key, word.text)
+            report.append(wrong_shape(word.span, message, help, arguments=arguments))
     return value
+
+
+def _chosen(value: object) -> list[Word]:
+    """The words of a field that are its values: the only one, or those of pairs."""
+    if isinstance(value, tuple):
+        return [word for _, word in value]
+    return [value] if isinstance(value, Word) else []
 
 
 def _one_name(key: str, entry: Entry) -> str | None:

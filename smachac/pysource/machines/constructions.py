@@ -25,7 +25,6 @@ from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import BudgetError, Evaluator
 from smachac.pysource.machines.framework import Call, noted_of, userdata_of
 from smachac.pysource.machines.graph import Graph
-from smachac.pysource.machines.heap import Children
 from smachac.pysource.machines.libraries import parameters_of
 from smachac.pysource.machines.origins import Origins
 from smachac.pysource.machines.project import Repository
@@ -135,8 +134,8 @@ class Callbacks:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Constructions:
     """The constructions of the states of a machine, the values that their userdata has first, the
-    items of iterators, the callbacks of concurrences, and the outcomes for which an operator has to
-    decide, with the levels of autonomy, each by the path of names. `noted` are the calls that have an effect which is no part of a graph, by their names, `shared` the paths of
+    items of iterators, and the callbacks of concurrences, each by the path of names. `noted` are
+    the calls that have an effect which is no part of a graph, by their names, `shared` the paths of
     states that are one object with the state of an earlier path, and their places. `modules` are
     those that the classes and the code need, each with the folder in which Python has to search
     it. `ros` is the version of ROS of the programs; 0: none. `one_rule`: a concurrence of
@@ -151,7 +150,6 @@ class Constructions:
     modules: Mapping[str, str]
     ros: int = 0
     one_rule: bool = False
-    autonomy: Mapping[Names, Mapping[str, str]] = field(default_factory=dict)
 
 
 def constructions(graph: Graph, evaluator: Evaluator, repository: Repository) -> Constructions:
@@ -173,7 +171,6 @@ class _Reader:
         userdata: dict[Names, tuple[Argument, ...]] = {}
         items: dict[Names, Argument] = {}
         callbacks: dict[Names, Callbacks] = {}
-        autonomy: dict[Names, Mapping[str, str]] = {}
         noted: list[tuple[str, Span]] = []
         for names, node in with_names(self.graph.machine.root):
             self.names = names
@@ -194,7 +191,6 @@ class _Reader:
                 states[names] = self._of_framework(made, self._state(made, node.span, around))
             elif isinstance(behavior := made.slots.get("$behavior"), Instance):
                 states[names] = self._of_framework(made, self._of_behavior(behavior, node.span))
-            autonomy |= {(*names, name): levels for name, levels in _levels(made)}
             inside = made if isinstance(made.cls, Class) else around
             noted += [(call.name, call.span or node.span) for call in noted_of(made)]
             defaults = made.slots.get("$defaults")
@@ -206,7 +202,7 @@ class _Reader:
             if isinstance(node, Concurrence):
                 callbacks[names] = self._callbacks(node, made)
         return Constructions(
-            states=states, userdata=userdata, items=items, callbacks=callbacks, autonomy=autonomy,
+            states=states, userdata=userdata, items=items, callbacks=callbacks,
             noted=tuple(dict.fromkeys(noted)), shared=tuple(self._shared()),
             modules=dict(sorted(self.modules.items())), one_rule=self.graph.framework.one_rule,
             ros=self.graph.framework.ros or self._ros(states),
@@ -645,14 +641,6 @@ def _with_default(argument: Argument, value: Value) -> Argument:
         return argument
     data = _plain(value.default, argument.span)
     return argument if data is UNWRITTEN else replace(argument, data=data, has_default=True)  # type: ignore[arg-type]
-
-
-def _levels(made: Instance) -> Iterator[tuple[str, Mapping[str, str]]]:
-    """The levels of autonomy of the outcomes of the states of a container, by state."""
-    children = made.slots.get("$children")
-    for added in children.added if isinstance(children, Children) else ():
-        if isinstance(added.label, Const) and added.autonomy:
-            yield str(added.label.value), dict(added.autonomy)
 
 
 def _plain(value: Value, span: Span) -> Data | object:

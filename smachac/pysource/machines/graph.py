@@ -16,6 +16,7 @@ from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir import nodes, types
 from smachac.ir.class_facts import ClassFacts
 from smachac.ir.nodes import (
+    Autonomy,
     Concurrence,
     Condition,
     Container,
@@ -579,7 +580,7 @@ class _Children:
             transitions: tuple[Transition, ...] = ()
             if self.kind in ("StateMachine", "Sequence"):
                 transitions = tuple(self._transitions(node, one, following))
-            found.append(_connected(node, transitions, tuple(self._remaps(node, one))))
+            found.append(_connected(node, transitions, tuple(self._remaps(node, one)), one))
         found += self.choices
         if self.incomplete and self.kind != "Iterator":
             names = {*(node.name for node in found), *(name for name, _ in self.outcomes or ())}
@@ -861,8 +862,15 @@ def _without_targets(node: Node, known: Collection[str]) -> Node:
     return replace(node, transitions=tuple(transitions))
 
 
-def _connected(node: Node, transitions: tuple[Transition, ...], remaps: tuple[Remap, ...]) -> Node:
-    return replace(node, transitions=transitions, remaps=remaps)
+def _connected(
+    node: Node, transitions: tuple[Transition, ...], remaps: tuple[Remap, ...], added: Added
+) -> Node:
+    """A state with its connections in its container. Levels of autonomy for other outcomes than its
+    own have no effect."""
+    names = outcome_names(node)
+    levels = (Autonomy(outcome=outcome, level=level, span=added.span)
+              for outcome, level in added.autonomy if outcome in names)  # fmt: skip
+    return replace(node, transitions=transitions, remaps=remaps, autonomy=tuple(levels))
 
 
 def _read_first(facts: ClassFacts, doubtful: Sequence[Span]) -> set[str]:

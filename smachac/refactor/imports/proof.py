@@ -58,6 +58,8 @@ def _different_edges(
     path = "/".join(names)
     yield from _unequal(path, "transitions", _edges(python, child), _edges(script, other))
     yield from _unequal(path, "remapping", _remaps(child), _remaps(other))
+    levels = ({one.outcome: one.level for one in node.autonomy} for node in (child, other))
+    yield from _unequal(path, "autonomy", *levels)
 
 
 def _edges(container: Container, child: Node) -> dict[str, tuple[str, bool]]:

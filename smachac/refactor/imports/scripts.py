@@ -245,11 +245,6 @@ class _Writer:
         self, names: Names, node: Node, parent: Container, scope: _Scope, indent: str
     ) -> list[str]:
         inside = f"{indent}    "
-        levels = self.machine.constructions.autonomy.get(names, {})
-        if levels:
-            shown = ", ".join(f"`{outcome}` {level}" for outcome, level in levels.items())
-            self.lose(node.span, f"the autonomy of `{node.name}`: {shown}",
-                      "the programs have the level Off: no operator has to decide")  # fmt: skip
         connections = _connections(node, parent)
         states: list[str] = []
         if isinstance(node, Leaf):
@@ -417,6 +412,8 @@ def _connections(node: Node, parent: Container) -> dict[str, str]:
     }
     if steps:
         fields["transitions"] = mapping_text(steps)
+    if node.autonomy:
+        fields["autonomy"] = mapping_text({one.outcome: one.level for one in node.autonomy})
     return fields
 
 

@@ -269,8 +269,12 @@ class EventState(_Node, flexbe_core.EventState):
     def _call(self, method):
         """Call a method of the state of FlexBE with its userdata. An exception is logged."""
         native, parent = self.native, self.parent
-        keys = UserData(reference=parent.userdata, remap=parent.names(self),
-                        input_keys=native.input_keys, output_keys=native.output_keys)
+        keys = UserData(
+            reference=parent.userdata,
+            remap=parent.names(self),
+            input_keys=native.input_keys,
+            output_keys=native.output_keys,
+        )
         try:
             with keys as userdata:
                 return method(userdata)

@@ -237,12 +237,14 @@ def _added(
         where = f"{path}/{child.name}"
         state = variables[where] if where in variables else _constructed(child, where, behavior)
         edges = dict(edges_of(child))
-        level = "Autonomy.Inherit" if where in variables else "Autonomy.Off"
+        usual = "Autonomy.Inherit" if where in variables else "Autonomy.Off"
+        levels = {outcome(one.outcome): f"Autonomy.{one.level}" for one in child.autonomy}
+        needed = [f"{name!r}: {levels.get(name, usual)}" for name in edges]
         arguments = [
             f"OperatableStateMachine.add({labels[where]!r}",
             f"{space}{state}",
             f"{space}transitions={edges!r}",
-            f"{space}autonomy={{{', '.join(f'{name!r}: {level}' for name in edges)}}}",
+            f"{space}autonomy={{{', '.join(needed)}}}",
         ]
         keys = dict.fromkeys(key.name for key in (*child.inputs, *child.outputs))
         if keys:

@@ -23,7 +23,8 @@ VERSION = 2
 _NOT_IN_THE_GRAPH = frozenset(
     ["class_facts", "given", "written", "role", "limits", "built_in", "stand_in", "any_key",
      "adds_frames", "tags", "failure", "ignored", "item_span", "exhausted_span", "loop_spans",
-     "final_spans", "frame", "secret", "to_span", "misplaced_keys", "takes_userdata", "synthetic"]
+     "final_spans", "frame", "secret", "to_span", "misplaced_keys", "takes_userdata", "synthetic",
+     "autonomy"]
 )  # fmt: skip
 """Fields for rules and templates, which are not part of the state graph."""
 
