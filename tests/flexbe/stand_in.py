@@ -119,9 +119,10 @@ class State:
     """A state. Name and parent are set once."""
 
     def __init__(self, **keys: Any) -> None:
+        both = _list(keys, "io_keys")
         self.outcomes = _list(keys, "outcomes")
-        self.input_keys = _list(keys, "input_keys")
-        self.output_keys = _list(keys, "output_keys")
+        self.input_keys = list(dict.fromkeys(_list(keys, "input_keys") + both))
+        self.output_keys = list(dict.fromkeys(_list(keys, "output_keys") + both))
         self._name: str | None = None
         self._parent: StateMachine | None = None
         self._inner_sync_request = self._is_controlled = False
@@ -174,6 +175,10 @@ class EventState(PreemptableState):
     def execute(self, userdata: Any) -> str | None:
         raise NotImplementedError
 
+    @property
+    def sleep_duration(self) -> float:
+        return self._desired_period_ns * 1e-9
+
     def _event_execute(self, userdata: Any) -> str | None:
         if self._is_controlled and "pause" in TOPICS:
             self._paused = TOPICS.pop("pause")
@@ -188,6 +193,9 @@ class EventState(PreemptableState):
         if self._entering:
             self._entering = False
             self.on_enter(userdata)
+        if self._skipped and not PreemptableState.preempt:
+            self._skipped = False
+            self.on_resume(userdata)
         outcome = self._operatable(userdata)
         if outcome is not None and not PreemptableState.preempt:
             self._entering = True
@@ -220,6 +228,8 @@ class EventState(PreemptableState):
         return None if outcome == "None" else outcome
 
     def _notify_skipped(self) -> None:
+        if not self._skipped:
+            self.on_pause()
         self._skipped = True
         if self._is_controlled and "preempt" in TOPICS:
             del TOPICS["preempt"]
@@ -227,6 +237,8 @@ class EventState(PreemptableState):
 
     def on_start(self) -> None: ...
     def on_stop(self) -> None: ...
+    def on_pause(self) -> None: ...
+    def on_resume(self, userdata: Any) -> None: ...
     def on_enter(self, userdata: Any) -> None: ...
     def on_exit(self, userdata: Any) -> None: ...
 
@@ -344,12 +356,32 @@ class StateMachine(State):
 class OperatableStateMachine(StateMachine):
     autonomy_level = 3
 
+    def wait(self, seconds: float) -> None:
+        """No time passes here."""
+
+    def on_exit(self, userdata: Any) -> None:
+        """The end from outside: that of its current state."""
+        state = self._current_state
+        if state is not None:
+            keys = state.input_keys, state.output_keys
+            state._entering = True
+            state.on_exit(UserData(self.userdata, *keys, self._remappings[state.name]))
+            self._current_state = None
+
     def confirm(self, name: str, number: int) -> None:
         """What comes before a run. With level 255 nobody controls the states."""
         self.set_name(name)
         if OperatableStateMachine.autonomy_level != 255:
             self._control(True)
         self.wait(seconds=0.001)
+        self._notify_start()
+
+    def _notify_start(self) -> None:
+        for state in self._states:
+            if isinstance(state, OperatableStateMachine):
+                state._notify_start()
+            else:
+                state.on_start()
 
     def _control(self, is_controlled: bool) -> None:
         for state in self._states:
@@ -379,12 +411,39 @@ class ConcurrencyContainer(OperatableStateMachine):
             if isinstance(state, OperatableStateMachine):
                 state._control(is_controlled)
 
-    def _execute_single_state(self, state: Any) -> str | None:
+    def _execute_current_state(self) -> str | None:
+        """A tick of each state that has not ended; then the first condition that holds."""
+        for state in self._states:
+            if self._returned_outcomes.get(state.name) is None:
+                ended = self._execute_single_state(state)
+                self._returned_outcomes[state.name] = ended  # type: ignore[assignment]
+        if "preempted" in self._returned_outcomes.values():
+            return "preempted"
+        for outcome, conditions in self._conditions:
+            if all(self._returned_outcomes.get(name) == wanted for name, wanted in conditions):
+                self.on_exit(self.userdata)
+                self._returned_outcomes = {}
+                self._current_state = None
+                found: str = outcome
+                return found
+        return None
+
+    def on_exit(self, userdata: Any) -> None:
+        for state in self._states:
+            if self._returned_outcomes.get(state.name) is None:
+                self._execute_single_state(state, force_exit=True)
+        self._current_state = None
+
+    def _execute_single_state(self, state: Any, force_exit: bool = False) -> str | None:
         result: str | None = None
         try:
             keys = state.input_keys, state.output_keys
             with UserData(self._userdata, *keys, self._remappings[state.name]) as userdata:
-                result = state.execute(userdata)
+                if force_exit:
+                    state._entering = True
+                    state.on_exit(userdata)
+                else:
+                    result = state.execute(userdata)
         except Exception as error:
             result, self._last_exception = None, error
             Logger.logerr(f"ConcurrencyContainer: Failed to execute state\n{error}")
@@ -402,12 +461,31 @@ class Behavior:
         self._state_machine: Any = None
         self.name = "unnamed behavior"
         self.beh_id = 0
+        self.contains: dict[str, Any] = {}
 
     def create(self) -> Any:
         raise NotImplementedError
 
     def add_parameter(self, name: str, default: Any) -> None:
         setattr(self, name, default)
+
+    def add_behavior(self, behavior_class: Any, behavior_id: str, node: object) -> None:
+        self.contains[behavior_id] = behavior_class(node)
+
+    def use_behavior(
+        self, behavior_class: Any, behavior_id: str, default_keys: list[str] | None = None,
+        parameters: dict[str, Any] | None = None,
+    ) -> Any:  # fmt: skip
+        behavior = self.contains[behavior_id]
+        for name, value in (parameters or {}).items():
+            setattr(behavior, name, value)
+        if behavior._state_machine is None:
+            behavior._state_machine = behavior.create()
+        machine = behavior._state_machine
+        machine.input_keys = list({*machine.input_keys} - {*(default_keys or ())})
+        for key in machine.input_keys:
+            machine.userdata._data.pop(key, None)
+        return machine
 
     def set_up(self, beh_id: int, autonomy_level: int, debug: bool) -> None:
         self.beh_id, OperatableStateMachine.autonomy_level = beh_id, autonomy_level

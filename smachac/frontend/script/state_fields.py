@@ -410,9 +410,9 @@ def _read(key: str, shape: str, entry: Entry, report: Report) -> object:
 
 def _chosen(value: object) -> list[Word]:
     """The words of a field that are its values: the only one, or those of pairs."""
-    if isinstance(value, tuple):
-        return [word for _, word in value]
-    return [value] if isinstance(value, Word) else []
+    if isinstance(value, Word):
+        return [value]
+    return [word for _, word in value] if isinstance(value, tuple) else []
 
 
 def _one_name(key: str, entry: Entry) -> str | None:

@@ -138,8 +138,8 @@ class Constructions:
     the calls that have an effect which is no part of a graph, by their names, `shared` the paths of
     states that are one object with the state of an earlier path, and their places. `modules` are
     those that the classes and the code need, each with the folder in which Python has to search
-    it. `ros` is the version of ROS of the programs; 0: none. `one_rule`: a concurrence of
-    which two rules hold stops with an exception."""
+    it. `ros` is the version of ROS of the programs; 0: none. `one_rule` and `write_through` are
+    those of the framework."""
 
     states: Mapping[Names, Construction]
     userdata: Mapping[Names, tuple[Argument, ...]]
@@ -150,6 +150,7 @@ class Constructions:
     modules: Mapping[str, str]
     ros: int = 0
     one_rule: bool = False
+    write_through: bool = False
 
 
 def constructions(graph: Graph, evaluator: Evaluator, repository: Repository) -> Constructions:
@@ -205,6 +206,7 @@ class _Reader:
             states=states, userdata=userdata, items=items, callbacks=callbacks,
             noted=tuple(dict.fromkeys(noted)), shared=tuple(self._shared()),
             modules=dict(sorted(self.modules.items())), one_rule=self.graph.framework.one_rule,
+            write_through=self.graph.framework.write_through,
             ros=self.graph.framework.ros or self._ros(states),
         )  # fmt: skip
 

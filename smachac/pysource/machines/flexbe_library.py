@@ -356,6 +356,7 @@ FLEXBE = Framework(
     exits=(PREEMPTED,),
     code="flexbe",
     places={f"flexbe_states.{name}": f"flexbe_states.{_module(name)}" for name in _READY},
+    write_through=True,
     ros=2,
     undeclared_outcomes=True,
     undeclared_keys=True,

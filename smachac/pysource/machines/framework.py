@@ -64,6 +64,8 @@ class Framework:
     For the import: `code` is the key of its classes in the `code` of interfaces. `places` are the
     modules of classes that a script can name. `parts` are classes that only work in another one,
     each with the reason. `one_rule`: a concurrence of which two rules hold stops with an exception.
+    `write_through`: the userdata of a container is made anew at each entry, from its first values,
+    and what is written to its outputs is in the containers around it at once.
     `ros` is the version of ROS that its target needs, 0 for that of the code.
     """
 
@@ -91,6 +93,7 @@ class Framework:
     places: Mapping[str, str] = field(default_factory=dict)
     parts: Mapping[str, str] = field(default_factory=dict)
     one_rule: bool = False
+    write_through: bool = False
     ros: int = 0
 
 

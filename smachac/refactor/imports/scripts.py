@@ -22,7 +22,7 @@ from smachac.ir.nodes import (
     StateMachine,
 )
 from smachac.ir.nodes import Sequence as SequenceNode
-from smachac.ir.traversal import outcome_names, written_children
+from smachac.ir.traversal import outcome_names, outer_inputs, outer_outputs, written_children
 from smachac.pysource.machines.constructions import (
     Argument,
     Callbacks,
@@ -312,6 +312,8 @@ class _Writer:
             if keys:
                 fields[word] = keys_text(_unlike(keys))
         presets = constructions.userdata.get(names, ())
+        if constructions.write_through and len(names) > 1:
+            self.lose_userdata(node, presets)
         if presets:
             values = {preset.name: self.preset(preset, scope) for preset in presets}
             fields["userdata"] = mapping_text(values)
@@ -327,6 +329,30 @@ class _Writer:
             case Iterator():
                 fields |= self.iterator_fields(names, node, scope)
         return fields
+
+    def lose_userdata(self, node: Container, presets: Sequence[Argument]) -> None:
+        """What differs where the userdata of a container is that of FlexBE."""
+        inputs = {key.name for key in node.inputs}
+        written = {key for child in node.children for key in outer_outputs(child)}
+        for preset in presets:
+            key = preset.name
+            if key in written:
+                self.lose(preset.span, f"`{key}` of `{node.name}` has this value again at each"
+                          " entry", "set it in a state of the container")  # fmt: skip
+            elif key in inputs:
+                self.lose(preset.span, f"`{key}` of `{node.name}` keeps this value, although it is"
+                          " an input", "remove the value or the input")  # fmt: skip
+        if not isinstance(node, Concurrence):
+            return
+        for child in written_children(node):
+            others = {key for other in node.children if other is not child
+                      for key in (*outer_inputs(other), *outer_outputs(other))}  # fmt: skip
+            shared = [key for key in outer_outputs(child) if key in others]
+            if not isinstance(child, Leaf) and shared:
+                keys = ", ".join(f"`{key}`" for key in shared)
+                self.lose(child.span, f"the other states of `{node.name}` get {keys} of"
+                          f" `{child.name}` at once, in a script at its end",
+                          "set the key in a state of its own")  # fmt: skip
 
     def preset(self, argument: Argument, scope: _Scope) -> str:
         """A value of userdata. A mapping is written in the long form, because its own keys could

@@ -584,6 +584,9 @@ class ConcurrencyContainer(_Container, flexbe_core.ConcurrencyContainer):
             if not self._is_skipped(state):
                 self._run(state)
                 self._inner_sync_request |= state._inner_sync_request
+        if self.join.rule_ends and self._decided() is not None:  # after all, as FlexBE
+            with _LOCK:
+                self._stop()
         if self.running:
             return None
         self._current_state = None
@@ -620,13 +623,17 @@ class ConcurrencyContainer(_Container, flexbe_core.ConcurrencyContainer):
                 self._returned_outcomes[state.name] = outcome
             else:
                 self.errors.append(error)
-            decides = self.join.first_ends
-            decides = decides or (self.join.rule_ends and self._decided() is not None)
-            if (decides or error is not None) and not self.stopping:
-                self.stopping = True
-                if not self.requested:
-                    for other in tuple(self.running):
-                        other.request()
+            if self.join.first_ends or error is not None:
+                self._stop()
+
+    def _stop(self):
+        """Send a request to stop to the states that run, once."""
+        if self.stopping:
+            return
+        self.stopping = True
+        if not self.requested:
+            for other in tuple(self.running):
+                other.request()
 
     def _joined(self):
         """The outcome. Raises the first exception of a state."""
