@@ -162,9 +162,11 @@ class PreemptableState(State):
 class EventState(PreemptableState):
     """A state whose `execute` is wrapped when it is made, as by the bases of FlexBE's class."""
 
+    PERIOD = 1e8
+
     def __init__(self, **keys: Any) -> None:
         super().__init__(**keys)
-        self._desired_period_ns = 1e8
+        self._desired_period_ns = self.PERIOD
         self._entering, self._paused, self._skipped = True, False, False
         self._stored: str | None = None
         self._last_active_container: str | None = None

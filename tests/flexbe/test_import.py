@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 
 from smachac.commands.cli import main
+from tests.flexbe import stand_in
 from tests.flexbe.programs import engine_modules, loaded, ready
 from tests.refactor.test_python_import import CASES
 
@@ -34,6 +35,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     (tmp_path / ".git").mkdir()
     monkeypatch.chdir(tmp_path)
     assert main(["import", "machine.py", "-o", "project", "-q"]) == 0
+    monkeypatch.setattr(stand_in.EventState, "PERIOD", 0)
     for name, module in engine_modules().items():
         monkeypatch.setitem(sys.modules, name, module)
     node: Any = ModuleType("smachac.runtime.smach_ros2")  # of the program without FlexBE
@@ -62,12 +64,8 @@ def run(made: Any) -> tuple[str, dict[str, Any]]:
         return outcome, dict(behavior._state_machine._userdata._data)
 
 
-def original() -> tuple[str, dict[str, Any]]:
-    return run(importlib.import_module("machine").DeliverySM)
-
-
 def test_the_program_does_what_the_behavior_does(project: Path) -> None:
-    outcome, held = original()
+    outcome, held = run(importlib.import_module("machine").DeliverySM)
     assert outcome == "finished"
     assert held["log"] == ["HELLO", "placed"]
     assert (held["spot"], held["held"]) == (7, False)
@@ -75,43 +73,68 @@ def test_the_program_does_what_the_behavior_does(project: Path) -> None:
         assert run(made) == (outcome, held)
 
 
-def test_random_outcomes(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """All calls of the states are the same, with ticks without an outcome."""
-    states = importlib.import_module("arm_states")
-    calls: list[str] = []
-    seed = 0
+class Calls:
+    """The calls of the states, with outcomes and ticks without one by `seed`. The behavior gets a
+    request to stop in the call of the number `preempted`."""
 
-    def execute(self: Any, userdata: Any) -> str | None:
-        name = type(self).__name__
-        number = zlib.crc32(f"{seed} {len(calls)} {self.path}".encode())
-        outcome = ([None, *OUTCOMES[name]] if len(calls) < 300 else OUTCOMES[name])[
-            number % (len(OUTCOMES[name]) + (len(calls) < 300))
-        ]
-        calls.append(f"execute {self.path} {outcome}")
+    def __init__(self) -> None:
+        self.made: list[str] = []
+        self.seed, self.preempted = 0, -1
+
+    def execute(self, state: Any) -> str | None:
+        if len(self.made) == self.preempted:
+            stand_in.PreemptableState.preempt = True
+        name = type(state).__name__
+        ends = [*([None] if len(self.made) < 300 else []), *OUTCOMES[name]]
+        outcome = ends[zlib.crc32(f"{self.seed} {len(self.made)} {state.path}".encode()) % len(ends)]
+        self.made.append(f"execute {state.path} {outcome}")
         return outcome
 
-    def noted(event: str) -> Any:
-        def call(self: Any, userdata: Any = None) -> None:
-            calls.append(f"{event} {self.path}")
-            if event == "on_enter" and type(self).__name__ == "Look":
-                userdata.place = len(calls)
+    def called(self, event: str) -> Any:
+        def call(state: Any, userdata: Any = None) -> None:
+            self.made.append(f"{event} {state.path}")
+            if event == "on_enter" and type(state).__name__ == "Look":
+                userdata.place = len(self.made)
 
         return call
 
+    def of(self, made: Any) -> tuple[str, dict[str, Any], list[str]]:
+        """The outcome, the userdata and the calls of a run."""
+        self.made.clear()
+        return (*run(made), [*self.made])
+
+
+@pytest.fixture
+def calls(project: Path, monkeypatch: pytest.MonkeyPatch) -> Calls:
+    states, found = importlib.import_module("arm_states"), Calls()
     for name in STATES:
         cls = getattr(states, name)
-        monkeypatch.setattr(cls, "execute", execute)
+        monkeypatch.setattr(cls, "execute", lambda self, userdata: found.execute(self))
         for event in ("on_enter", "on_exit", "on_start", "on_stop"):
-            monkeypatch.setattr(cls, event, noted(event), raising=False)
+            monkeypatch.setattr(cls, event, found.called(event), raising=False)
+    return found
+
+
+def test_random_outcomes(project: Path, calls: Calls) -> None:
+    """All calls of the states are the same."""
+    ends = set()
+    behavior = importlib.import_module("machine").DeliverySM
+    with loaded(files_of(project)) as made:
+        for calls.seed in range(RUNS):
+            expected = calls.of(behavior)
+            assert calls.of(made) == expected
+            ends.add(expected[0])
+    assert ends == {"finished", "failed"}
+
+
+def test_requests_to_stop(project: Path, calls: Calls) -> None:
+    """FlexBE ends the behavior with `preempted`: the states are left without their `on_exit`."""
+    behavior = importlib.import_module("machine").DeliverySM
     ends = set()
     with loaded(files_of(project)) as made:
-        for number in range(RUNS):
-            seed = number
-            calls.clear()
-            expected, held = original()
-            wanted = [*calls]
-            calls.clear()
-            assert run(made) == (expected, held)
-            assert calls == wanted
-            ends.add(expected)
-    assert ends == {"finished", "failed"}
+        for calls.seed in range(RUNS):
+            calls.preempted = 4 + calls.seed % 12
+            expected = calls.of(behavior)
+            assert calls.of(made) == expected
+            ends.add(expected[0])
+    assert "preempted" in ends
