@@ -36,9 +36,9 @@ examples:
   smachac check project/main.yml                      then: find the errors in the script
   smachac build project/main.yml --target python      and generate its program
 
-The code of your states stays where it is: the scripts name your classes, for SMACH or for YASMIN.
-States of SCXML and XML get classes whose code is to be written. The command prints what
-it could not take over, and proves that each script has the same graph as the machine in the file.
+The code of your states stays where it is: the scripts name your classes, for SMACH, YASMIN or
+FlexBE. States of SCXML and XML get classes whose code is to be written. The command prints what it
+could not take over, and proves that each script has the same graph as the machine in the file.
 Your code is not run. Files that were edited since an import are never overwritten.
 
 exit codes: 0 all machines were imported and proven, 1 a machine was not, or a file is in the way,
@@ -58,7 +58,7 @@ def import_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "file",
         type=as_path,
-        help="a Python file that builds machines, an SCXML document, or an XML file of YASMIN",
+        help="a Python file that builds machines or a behavior of FlexBE, an SCXML document, or an XML file of YASMIN",
     )
     parser.add_argument("-o", "--output", type=as_path, default=".", metavar="DIR",
                         help="the folder of the project (default: the current one)")  # fmt: skip
@@ -120,7 +120,7 @@ def import_command(arguments: Namespace) -> int:
         return usage(message, arguments.machine, made.all_names)
     if not made.names:
         print(f"no state machine found in {shown(path)}\nhelp: name the file that builds"
-              " `smach.StateMachine`, or one of YASMIN", file=sys.stderr)  # fmt: skip
+              " `smach.StateMachine`, or one of YASMIN or FlexBE", file=sys.stderr)  # fmt: skip
         return FINDINGS
     for machine in made.incomplete:
         why = "parts of it are not known"

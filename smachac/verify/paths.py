@@ -79,7 +79,8 @@ class Path:
 
 @dataclass(slots=True)
 class PathRun:
-    """The state of one run while a path is recorded."""
+    """The state of one run while a path is recorded. `raced`: a concurrence with `join: rule` has
+    stopped branches; how far they are depends on the scheduling of threads."""
 
     strategy: Strategy
     live: frozenset[str]
@@ -91,6 +92,7 @@ class PathRun:
     visits: int = 0
     ended: dict[str, set[str]] = field(default_factory=dict)
     stopped: set[str] = field(default_factory=set)
+    raced: bool = False
 
 
 class PathRunner:
@@ -135,7 +137,8 @@ class PathRunner:
     def make(
         self, kind: Kind, strategy: Strategy, *, live: bool = False, stops: Collection[int] = ()
     ) -> tuple[PathRun, Path | None]:
-        """Run the machine with a strategy. The path is None if it is a duplicate or has no end.
+        """Run the machine with a strategy. The path is None if it is a duplicate, has no end, or
+        depends on the scheduling of threads.
 
         At the choices with the numbers `stops` the machine is preempted, at START before it starts.
         Inside a concurrence this is left out unless all other branches wait for a request: else it
@@ -162,6 +165,8 @@ class PathRunner:
         self.spent += result.steps + len(self._tree) // 10
         if result.error is not None and result.error.kind == "no-end":
             self.endless += 1
+            return path_run, None
+        if path_run.raced:
             return path_run, None
         mark = hash(
             (live, *stops, tuple((choice.place, choice.taken) for choice in path_run.choices))
@@ -251,11 +256,16 @@ class PathRunner:
 
     def _record(self, path_run: PathRun, event: Event) -> None:
         """Update coverage and entries with an event."""
-        self.coverage.record(event)
         path = event["path"]
         if event["event"] == "preempt":
+            around = path.rpartition("/")[0]
+            node = self._tree.get(around)
+            by_rule = isinstance(node, Concurrence) and node.join == "rule"
+            path_run.raced |= by_rule and around not in path_run.stopped
             path_run.stopped.add(path)
-        elif event["event"] in ("exit", "error"):
+        if not path_run.raced:
+            self.coverage.record(event)
+        if event["event"] in ("exit", "error"):
             path_run.stopped.discard(path)
         if event["event"] == "enter":
             if path not in self.entries:

@@ -18,7 +18,13 @@ import pytest
 from smachac.commands.cli import main
 from tests.flexbe import stand_in
 from tests.flexbe.programs import engine_modules, loaded, ready
+from tests.flexbe.test_read_back import compare_generated
 from tests.refactor.test_python_import import CASES
+from tests.support.framework_imports import (
+    compare_second_imports,
+    imported_output,
+    proven_machine,
+)
 
 MODULES = ("machine", "place_sm", "arm_states")
 STATES = ("Look", "Note", "Close", "Hold")
@@ -85,8 +91,9 @@ class Calls:
         if len(self.made) == self.preempted:
             stand_in.PreemptableState.preempt = True
         name = type(state).__name__
-        ends = [*([None] if len(self.made) < 300 else []), *OUTCOMES[name]]
-        outcome = ends[zlib.crc32(f"{self.seed} {len(self.made)} {state.path}".encode()) % len(ends)]
+        number = len(self.made)
+        ends = [*([None] if number < 300 else []), *OUTCOMES[name]]
+        outcome = ends[zlib.crc32(f"{self.seed} {number} {state.path}".encode()) % len(ends)]
         self.made.append(f"execute {state.path} {outcome}")
         return outcome
 
@@ -138,3 +145,135 @@ def test_requests_to_stop(project: Path, calls: Calls) -> None:
             assert calls.of(made) == expected
             ends.add(expected[0])
     assert "preempted" in ends
+
+
+@pytest.mark.parametrize("name", ["flexbe", "flexbe_rare"])
+def test_the_program_has_the_containers_of_the_behavior(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The graph of Python is that of the script (the proof), and that is the one of the program."""
+    shutil.copytree(CASES / name, tmp_path, dirs_exist_ok=True)
+    (tmp_path / ".git").mkdir()
+    monkeypatch.chdir(tmp_path)
+    main(["import", "machine.py", "-o", "project", "-q"])
+    machine = proven_machine()
+    compare_generated(machine, files_of(tmp_path / "project"), tmp_path / "back")
+
+
+def test_a_second_import(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    compare_second_imports(project, "PlaceSM.yml", ('"hello"', '"good day"'), capsys)
+
+
+HEAD = """\
+from flexbe_core import (
+    Autonomy, Behavior, ConcurrencyContainer, EventState, OperatableStateMachine, PriorityContainer
+)
+
+
+class Go(EventState):
+    def __init__(self, to=1):
+        super().__init__(outcomes=["there", "lost"], io_keys=["way"])
+
+    def execute(self, userdata):
+        return "there"
+
+
+class TourSM(Behavior):
+    def __init__(self, node):
+        super().__init__()
+        self.add_parameter("speed", 1)
+
+    def create(self):
+        sm = OperatableStateMachine(outcomes=["end"])
+        sm.userdata.way = 1
+"""
+
+ENDS = {"there": "end", "lost": "end"}
+SAME = {"there": "there", "lost": "lost"}
+
+
+def added(name: str, state: str, targets: dict[str, str], autonomy: str = "{}") -> str:
+    call = f"OperatableStateMachine.add({name!r}, {state}, transitions={targets},"
+    return f"    {call} autonomy={autonomy})\n"
+
+
+def behavior(state: str, before: str = "", autonomy: str = "{}") -> str:
+    """A behavior with one state, and code before that is added."""
+    body = f"{before}with sm:\n{added('A', state, ENDS, autonomy)}return sm\n"
+    return HEAD + "".join(f"        {line}\n" for line in body.splitlines())
+
+
+def container(name: str, kind: str, arguments: str, *states: str) -> str:
+    """The code of a container with some states, which have the names B, C, ..."""
+    rows = (added(label, state, SAME) for label, state in zip("BCD", states, strict=False))
+    made = f"{name} = {kind}(outcomes=['there', 'lost'], {arguments})\n"
+    return f"{made}with {name}:\n{''.join(rows)}"
+
+
+MACHINE, PARALLEL = "OperatableStateMachine", "ConcurrencyContainer"
+BOTH = "conditions=[('there', [('B', 'there'), ('C', 'there')])]"
+FIRST = "conditions=[('there', [('B', 'there')]), ('lost', [('B', 'lost')])]"
+
+LISTED = {
+    "priority": (behavior("inner", container("inner", "PriorityContainer", "", "Go()")),
+                 "the priority of the container"),
+    "conditions that never hold": (
+        behavior("inner", container("inner", PARALLEL, BOTH, "Go()", "Go()")),
+        "no condition of `A` holds: FlexBE does not end it"),
+    "value that is set again": (
+        behavior("inner", container("inner", MACHINE, "", "Go()") + "inner.userdata.way = 1\n")
+        .replace("'lost': 'end'", "'lost': 'A'"),
+        "`way` of `A` has this value again at each entry"),
+    "value of an input": (
+        behavior("inner", container("inner", MACHINE, "input_keys=['x']", "Go()")
+                 + "inner.userdata.x = 1\n"),
+        "`x` of `A` keeps this value, although it is an input"),
+    "output of a branch": (
+        behavior("inner", container("deep", MACHINE, "output_keys=['way']", "Go()")
+                 + container("inner", PARALLEL, FIRST, "Go()", "deep")),
+        "the other states of `A` get `way` of `C` at once, in a script at its end"),
+    "unknown levels": (behavior("Go()", "import sys\n", "{'there': len(sys.argv)}"),
+                       "levels of autonomy that are not known"),
+    "unknown argument": (behavior("Go(self.speed + 1)"), "`self.speed + 1` is not known"),
+    "rate": (behavior("go", "import sys\ngo = Go()\ngo.set_rate(len(sys.argv))\n"),
+             "the call of `set_rate`"),
+    "behavior that is not found": (
+        behavior("self.use_behavior(OtherSM, 'A')").replace(
+            "\n\nclass Go", "\nfrom other_behaviors.other_sm import OtherSM\n\n\nclass Go", 1)
+        .replace('self.add_parameter("speed", 1)', "self.add_behavior(OtherSM, 'A', node)"),
+        "the code of the state: its class is not known"),
+    "ROS 1": (behavior("Go()").replace("from flexbe", "import rospy\nfrom flexbe", 1),
+              "this module is code for ROS 1"),
+}  # fmt: skip
+"""Behaviors, and what the import lists for each."""
+
+
+@pytest.mark.parametrize("name", LISTED)
+def test_what_is_not_taken_over_is_listed(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, text = LISTED[name]
+    monkeypatch.chdir(tmp_path)
+    assert text in imported_output(code, capsys)
+
+
+TAKEN = {
+    "parameter": (behavior("Go(self.speed)"), "params: {speed: 1}"),
+    "level by its number": (behavior("Go()", autonomy="{'there': 2}"), "autonomy: {there: High}"),
+    "levels of other names": (behavior("Go()", autonomy="{'x': Autonomy.Full}"), ""),
+    "inherited level": (behavior("Go()", autonomy="{'there': Autonomy.Inherit}"), ""),
+    "rate": (behavior("go", "go = Go()\ngo.set_rate(5)\n"), "template: Go"),
+}
+"""Behaviors that lose nothing, and what the script has then."""
+
+
+@pytest.mark.parametrize("name", TAKEN)
+def test_what_is_taken_over(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, text = TAKEN[name]
+    monkeypatch.chdir(tmp_path)
+    assert "not taken over" not in imported_output(code, capsys)
+    script = Path("project/main.yml").read_text("utf-8")
+    assert text in script
+    assert ("autonomy" in script) is ("autonomy" in text)

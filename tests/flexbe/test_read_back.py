@@ -43,6 +43,9 @@ def compare(written: Node, found: Node, path: str, names: Names) -> None:
     assert labels[first].name == (getattr(written, "initial", "") or written.children[0].name)
     for label, child in labels.items():
         compare(child, children[label], f"{path}/{child.name}", names)
+        levels = ({OWN.get(one.outcome, one.outcome): one.level for one in node.autonomy}
+                  for node in (child, children[label]))  # fmt: skip
+        assert next(levels) == next(levels), path
         steps = {OWN.get(step.outcome, step.outcome): labels[step.target].name
                  if step.target in labels else OWN.get(step.target, step.target)
                  for step in children[label].transitions}  # fmt: skip
@@ -61,6 +64,11 @@ def read_back(machine: Machine, library: Library, folder: Path) -> set[str]:
     """Compares the machine of a behavior with that which was written; the codes of the findings."""
     files = files_of(machine, library)
     assert files is not None
+    return compare_generated(machine, files, folder)
+
+
+def compare_generated(machine: Machine, files: dict[str, str], folder: Path) -> set[str]:
+    """The same for the files of a behavior."""
     for name, text in files.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)

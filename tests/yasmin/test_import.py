@@ -15,11 +15,14 @@ import pytest
 
 from smachac.commands.cli import main
 from smachac.driver import analyse_script, build
-from smachac.driver.python_machines import Built, PythonProject
-from smachac.frontend.files import Disk, disk_library
-from smachac.refactor.imports.proof import differences
+from smachac.frontend.files import disk_library
 from smachac.targets.yasmin import TARGET
 from tests.refactor.test_python_import import CASES
+from tests.support.framework_imports import (
+    compare_second_imports,
+    imported_output,
+    proven_machine,
+)
 from tests.yasmin.programs import ENGINE, loaded
 from tests.yasmin.test_read_back import compare_generated
 
@@ -117,14 +120,8 @@ def test_the_program_has_the_containers_of_the_machine(
     (tmp_path / ".git").mkdir()
     monkeypatch.chdir(tmp_path)
     main(["import", "machine.py", "-o", "project", "-q"])
-    built: list[Built] = []
-    PythonProject(Disk()).read(Path("machine.py"), built=built)
-    checked = analyse_script(Path("project/main.yml")).machine
-    assert checked is not None
-    graph, constructions = built[0]
-    assert differences(graph.machine.root, checked.root, constructions) == []
-    files = files_of(Path("project/main.yml"))
-    compare_generated(checked, files, tmp_path / "out")
+    machine = proven_machine()
+    compare_generated(machine, files_of(Path("project/main.yml")), tmp_path / "out")
 
 
 HEAD = """\
@@ -178,13 +175,8 @@ def test_what_is_not_taken_over_is_listed(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     code, text = LISTED[name]
-    (tmp_path / ".git").mkdir()
     monkeypatch.chdir(tmp_path)
-    Path("machine.py").write_text(f"{HEAD}{code}\n", "utf-8")
-    assert main(["import", "machine.py", "-o", "project", "-q"]) == 0
-    out = capsys.readouterr().out
-    assert text in out.replace("\n", " ")
-    assert "proof: the graph of main.yml is the graph of machine.py" in out
+    assert text in imported_output(f"{HEAD}{code}\n", capsys)
     own = Path("project/imported_states.py")
     assert not own.exists() or "set_parameter" not in own.read_text("utf-8")
 
@@ -234,12 +226,10 @@ def test_what_is_taken_over(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     code, text = TAKEN[name]
-    (tmp_path / ".git").mkdir()
     monkeypatch.chdir(tmp_path)
     main_part = "".join(f"    {line}\n" for line in code.split("\n"))
-    Path("machine.py").write_text(f'{HEAD}if __name__ == "__main__":\n{main_part}', "utf-8")
-    assert main(["import", "machine.py", "-o", "project", "-q"]) == 0
-    assert "not taken over" not in capsys.readouterr().out
+    out = imported_output(f'{HEAD}if __name__ == "__main__":\n{main_part}', capsys)
+    assert "not taken over" not in out
     script = Path("project/main.yml").read_text("utf-8")
     assert text in script
     assert text or "userdata" not in script
@@ -283,17 +273,7 @@ def test_a_class_that_waits_for_another_region_is_refused(
 
 
 def test_a_second_import(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    before = {path: path.read_bytes() for path in project.rglob("*") if path.is_file()}
-    assert main(["import", "machine.py", "-o", "project"]) == 0
-    assert "project is up to date\n" in capsys.readouterr().out
-    assert before == {path: path.read_bytes() for path in project.rglob("*") if path.is_file()}
-    own = project / "imported_states.py"
-    own.write_text(own.read_text("utf-8") + "# mine\n", "utf-8")
-    machine = project.parent / "machine.py"
-    machine.write_text(machine.read_text("utf-8").replace('label="first"', 'label="new"'), "utf-8")
-    assert main(["import", "machine.py", "-o", "project"]) == 1
-    assert "project/imported_states.py was edited" in capsys.readouterr().err
-    assert "label: first" in (project / "main.yml").read_text("utf-8")
+    compare_second_imports(project, "imported_states.py", ('label="first"', 'label="new"'), capsys)
 
 
 # --- states of YASMIN in scripts

@@ -418,7 +418,7 @@ class _Reader:
         data = _plain(value, span)
         code = self._code(value, node, frame) if data is UNWRITTEN else None
         found = _with_default(_argument(name, data, code, text, parameter, span), value)
-        if found.is_known:
+        if found.is_known or found.has_default:
             return found
         if node is None:
             return replace(found, source=(span, name), word=name)
@@ -530,7 +530,8 @@ class _Reader:
         bound = self._bound(around) if around is not None else {}
         parameter = next((word for word, part in bound.items() if part is value), "")
         found = _with_default(_argument(name, data, code, name, parameter, span), value)
-        return found if found.is_known else replace(found, source=(span, name), word=name)
+        is_named = found.is_known or found.has_default
+        return found if is_named else replace(found, source=(span, name), word=name)
 
     def _items(self, made: Instance, around: Instance | None, span: Span) -> Argument:
         """The items of an iterator; those that a function without parameters returns."""
@@ -642,7 +643,10 @@ def _with_default(argument: Argument, value: Value) -> Argument:
     if argument.is_known or not isinstance(value, Adjustable):
         return argument
     data = _plain(value.default, argument.span)
-    return argument if data is UNWRITTEN else replace(argument, data=data, has_default=True)  # type: ignore[arg-type]
+    if data is UNWRITTEN:
+        return argument
+    return replace(argument, data=data, has_default=True, word=value.name,  # type: ignore[arg-type]
+                   source=(value.owner, value.name))  # fmt: skip
 
 
 def _plain(value: Value, span: Span) -> Data | object:

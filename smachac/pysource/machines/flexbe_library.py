@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 from smachac.diagnostics.source import Span
 from smachac.pysource.life_cycle import LifeCycle
@@ -76,6 +76,9 @@ _OUTCOMES_AT, _INPUTS_AT = ("DecisionState", "OperatorDecisionState"), (
 
 PRIORITY = "flexbe_core.PriorityContainer"
 """The container that runs alone in a concurrence."""
+
+AUTONOMY = "autonomy"
+"""The name under which levels of autonomy are noted that are not known."""
 
 LEVELS = ("Off", "Low", "High", "Full")
 """The levels of autonomy by their numbers; `Inherit` is that of `Off`."""
@@ -161,9 +164,12 @@ def _add(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Val
     container = evaluator.opened[-1]
     slots = container.slots if isinstance(container, Instance) else {}
     kind = "concurrence" if slots.get("$kind") == Const("Concurrence") else "add"
+    levels = _levels(arguments.get(3, "autonomy"))
     added = Added(label=label, state=state, transitions=copied(transitions),
                   remapping=copied(remapping), span=span, kind=kind,
-                  autonomy=tuple(_levels(arguments.get(3, "autonomy"))))  # fmt: skip
+                  autonomy=tuple((levels or {}).items()))  # fmt: skip
+    if levels is None:
+        noted(AUTONOMY)(evaluator, Arguments((container,)), span)
     is_added = add_child(evaluator, container, added)
     outcomes = sequence(slots.get("$outcomes")) or ()
     if is_added and isinstance(label, Const) and label in outcomes:
@@ -171,14 +177,19 @@ def _add(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Val
     return NONE
 
 
-def _levels(given: Value | None) -> Iterator[tuple[str, str]]:
-    """The outcomes with another level of autonomy than `Off`, and that level."""
-    pairs = given.items if isinstance(given, DictValue) else {}
-    for outcome, level in pairs.values() if isinstance(pairs, Mapping) else ():
+def _levels(given: Value | None) -> dict[str, str] | None:
+    """The outcomes with another level of autonomy than `Off`, and that level; None: not known."""
+    if given is None or given == NONE:
+        return {}
+    pairs = given.items if isinstance(given, DictValue) else UNKNOWN
+    found: dict[str, str] = {}
+    for outcome, level in pairs.values() if isinstance(pairs, Mapping) else ((UNKNOWN, UNKNOWN),):
         value = getattr(level, "value", None)
         name = LEVELS[value] if isinstance(value, int) and 0 <= value < len(LEVELS) else value
-        if isinstance(outcome, Const) and name in LEVELS[1:]:
-            yield str(outcome.value), str(name)
+        if not isinstance(outcome, Const) or name not in ("Inherit", *LEVELS):
+            return None
+        found[str(outcome.value)] = str(name)
+    return {outcome: name for outcome, name in found.items() if name in LEVELS[1:]}
 
 
 def _behavior(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
@@ -194,8 +205,9 @@ def _add_parameter(evaluator: Interpreter, arguments: Arguments, span: Span | No
     me, name = arguments.get(0, "self"), arguments.get(1, "name")
     default = arguments.get(2, "default", UNKNOWN) or UNKNOWN
     if isinstance(me, Instance) and isinstance(name, Const):
-        value = Adjustable(reason="a parameter", default=default)
-        evaluator.heap.set(me.slots, str(name.value), value)
+        word = str(name.value)
+        value = Adjustable(reason="a parameter", owner=me, name=word, default=default)
+        evaluator.heap.set(me.slots, word, value)
     return NONE
 
 
@@ -284,6 +296,7 @@ def _unknown(evaluator: Interpreter, arguments: Arguments, span: Span | None) ->
 
 _STATE: Mapping[str, Run] = {
     "__init__": _state,
+    "set_rate": noted("set_rate"),
     **dict.fromkeys(
         ("initialize_ros", "set_name", "set_parent", "on_start", "on_stop", "on_pause",
          "on_resume", "on_enter", "on_exit"), nothing,

@@ -79,8 +79,11 @@ class OpenText(Unknown):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Adjustable(Unknown):
-    """A value that the user of a machine can change, and what it is without that."""
+    """The value of a parameter of an object that the user of a machine can change, and what it is
+    without that."""
 
+    owner: Instance
+    name: str
     default: Value
 
 

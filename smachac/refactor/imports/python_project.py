@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from smachac.diagnostics.source import Span
-from smachac.driver.python_machines import Built, PythonFile, PythonProject
+from smachac.driver.python_machines import Built, PythonProject
 from smachac.frontend.files import Disk, lies_inside
 from smachac.ir.nodes import Leaf, Node
 from smachac.ir.traversal import walk
@@ -56,7 +56,7 @@ def import_python(
                         all_names=all_names, vain=vain)  # fmt: skip
     ros = max(machine.constructions.ros for machine in machines)
     made = script_files(machines, folder, ros, built_in_names())
-    made.lost += _lost_in_modules(made, file, disk)
+    made.lost += _lost_in_modules(made, ros, disk)
     folders, outside = _code_folders(made, folder)
     made.lost += [_not_found(made.main, name) for name in outside]
     made.texts["smachac.toml"] = settings(folders, ros)
@@ -160,8 +160,8 @@ def _not_found(main: Mapping[str, PythonMachine], module: str) -> Lost:
     )
 
 
-def _lost_in_modules(made: ScriptFiles, file: PythonFile, disk: Disk) -> Iterator[Lost]:
-    """What the modules of the user do when a program imports them."""
+def _lost_in_modules(made: ScriptFiles, ros: int, disk: Disk) -> Iterator[Lost]:
+    """What the modules of the user do when a program for a version of ROS imports them."""
     for name, folder in made.modules.items():
         stem = Path(folder, *name.split("."))
         path = stem / "__init__.py" if (stem / "__init__.py").is_file() else stem.with_suffix(".py")
@@ -173,12 +173,25 @@ def _lost_in_modules(made: ScriptFiles, file: PythonFile, disk: Disk) -> Iterato
             yield Lost(span=Span(source, 0, 0), text="this module is code for Python 2",
                        help="port it to Python 3: the programs are in Python 3")  # fmt: skip
         for line in text.tree.body:
+            if ros == 2 and "rospy" in _imported(line):
+                yield Lost(span=text.span(line), text="this module is code for ROS 1",
+                           help="port it to ROS 2: the programs are for ROS 2")  # fmt: skip
             match line:
                 case ast.Expr(value=ast.Call(func=called)) if _runs(called):
                     yield Lost(
                         span=text.span(line), text="each program that imports the module runs this",
                         help='put it below `if __name__ == "__main__":`',
                     )  # fmt: skip
+
+
+def _imported(line: ast.stmt) -> list[str]:
+    """The packages that a statement imports."""
+    match line:
+        case ast.Import(names=names):
+            return [alias.name.partition(".")[0] for alias in names]
+        case ast.ImportFrom(module=str() as module, level=0):
+            return [module.partition(".")[0]]
+    return []
 
 
 def _runs(called: ast.expr) -> bool:

@@ -31,7 +31,7 @@ from smachac.pysource.machines.constructions import (
     Names,
     Outcomes,
 )
-from smachac.pysource.machines.flexbe_library import PRIORITY
+from smachac.pysource.machines.flexbe_library import AUTONOMY, PRIORITY
 from smachac.pysource.machines.yasmin_library import BLACKBOARD
 from smachac.records import dataclass, field
 from smachac.refactor.imports.state_types import (
@@ -63,6 +63,8 @@ _NOTED = {
     "add_input_key": (
         "the default value of a key", "write it in `userdata`, or in the constructor of the class"
     ),
+    AUTONOMY: ("levels of autonomy that are not known", "write `autonomy` in the script"),
+    "set_rate": ("the call of `set_rate`", "call it in the constructor of the class"),
     PRIORITY: ("the priority of the container", "pause the other states in their code"),
     BLACKBOARD: ("the values of the blackboard", "write them in `userdata` of the script"),
 }  # fmt: skip
@@ -313,7 +315,7 @@ class _Writer:
                 fields[word] = keys_text(_unlike(keys))
         presets = constructions.userdata.get(names, ())
         if constructions.write_through and len(names) > 1:
-            self.lose_userdata(node, presets)
+            self.lose_userdata(names, node, presets)
         if presets:
             values = {preset.name: self.preset(preset, scope) for preset in presets}
             fields["userdata"] = mapping_text(values)
@@ -330,10 +332,12 @@ class _Writer:
                 fields |= self.iterator_fields(names, node, scope)
         return fields
 
-    def lose_userdata(self, node: Container, presets: Sequence[Argument]) -> None:
+    def lose_userdata(self, names: Names, node: Container, presets: Sequence[Argument]) -> None:
         """What differs where the userdata of a container is that of FlexBE."""
         inputs = {key.name for key in node.inputs}
         written = {key for child in node.children for key in outer_outputs(child)}
+        if presets and not _is_entered_again(self.machine.root, names):
+            written = set()
         for preset in presets:
             key = preset.name
             if key in written:
@@ -441,6 +445,26 @@ def _connections(node: Node, parent: Container) -> dict[str, str]:
     if node.autonomy:
         fields["autonomy"] = mapping_text({one.outcome: one.level for one in node.autonomy})
     return fields
+
+
+def _is_entered_again(root: Container, names: Names) -> bool:
+    """Whether a container, or one around it, can be entered more than once."""
+    around = root
+    for name in names[1:]:
+        children = {child.name: child for child in around.children}
+        seen: set[str] = set()
+        todo = [step.target for step in children[name].transitions]
+        while todo:
+            target = todo.pop()
+            if target in children and target not in seen:
+                seen.add(target)
+                todo += [step.target for step in children[target].transitions]
+        if name in seen:
+            return True
+        inner = children[name]
+        assert not isinstance(inner, Leaf)
+        around = inner
+    return False
 
 
 MOST_RULES = 100

@@ -650,18 +650,6 @@ TaskSM: StateMachine [finished, failed, preempted]
     )
 
 
-def test_import_names_the_framework_and_writes_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    read(GRAPH, tmp_path)
-    monkeypatch.chdir(tmp_path)
-    assert main(["import", "machine.py", "-o", "project"]) == 1
-    error = capsys.readouterr().err
-    assert "`TaskSM` was not imported: it cannot become a script\n" in error
-    assert ": machines for FlexBE are not imported\n" in error
-    assert not (tmp_path / "project").exists()
-
-
 @pytest.mark.parametrize("target", ["dot", "mermaid", "html"])
 def test_pictures(target: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     read(GRAPH, tmp_path)
