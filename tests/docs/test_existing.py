@@ -59,12 +59,14 @@ def test_the_files_of_the_import(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     text = PAGE.read_text("utf-8")
     monkeypatch.chdir(tmp_path)
     (tmp_path / ".git").mkdir()
-    for name, folder in (("parcels", "project"), ("picking", "picking")):
+    projects = {"parcels": "project", "picking": "picking", "delivery_sm": "delivery"}
+    for name, folder in projects.items():
         (code, *_) = re.findall(rf"^```python\n# {name}\.py\n(.*?)^```", text, re.M | re.S)
         Path(f"{name}.py").write_text(f"# {name}.py\n{code}")
         main(["import", f"{name}.py", "-o", folder])
     shown = re.findall(r"^```yaml\n# (\S+)\n(.*?)^```", text, re.M | re.S)
-    names = ["project/main.yml", "project/templates/Weigh.yml", "picking/templates/Grasp.yml"]
+    names = ["project/main.yml", "project/templates/Weigh.yml", "picking/templates/Grasp.yml",
+             "delivery/main.yml"]  # fmt: skip
     assert [name for name, _ in shown] == names
     for name, content in shown:
         assert Path(name).read_text("utf-8").partition("\n")[2] == content
