@@ -58,7 +58,8 @@ def import_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "file",
         type=as_path,
-        help="a Python file that builds machines or a behavior of FlexBE, an SCXML document, or an XML file of YASMIN",
+        help="a Python file that builds machines or a behavior of FlexBE, an SCXML document, or an"
+        " XML file of YASMIN",
     )
     parser.add_argument("-o", "--output", type=as_path, default=".", metavar="DIR",
                         help="the folder of the project (default: the current one)")  # fmt: skip

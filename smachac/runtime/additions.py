@@ -42,10 +42,10 @@ class SleepState(smach.State):
         return "succeeded"
 
 
-def native_state(state: Any, outcomes: Any) -> Any:
+def native_state(state: Any, outcomes: Any, input_keys: Any = (), output_keys: Any = ()) -> Any:
     """Put a state of YASMIN or FlexBE into a machine of SMACH, which cannot run it: the containers
-    of that framework do. Of its outcomes, those of the script are declared."""
-    made = smach.State(outcomes=list(outcomes))
+    of that framework do. Its outcomes and keys are those of the script."""
+    made = smach.State(list(outcomes), list(input_keys), list(output_keys))
     made.native = state
     return made
 

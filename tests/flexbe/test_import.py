@@ -8,7 +8,7 @@ import io
 import shutil
 import sys
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -16,6 +16,9 @@ from typing import Any
 import pytest
 
 from smachac.commands.cli import main
+from smachac.driver import analyse_script, build
+from smachac.frontend.files import disk_library
+from smachac.targets.flexbe import TARGET
 from tests.flexbe import stand_in
 from tests.flexbe.programs import engine_modules, loaded, ready
 from tests.flexbe.test_read_back import compare_generated
@@ -277,3 +280,120 @@ def test_what_is_taken_over(
     script = Path("project/main.yml").read_text("utf-8")
     assert text in script
     assert ("autonomy" in script) is ("autonomy" in text)
+
+
+# --- states of FlexBE in scripts
+
+GRASP = """\
+from flexbe_core import EventState
+
+CALLS = []
+
+
+class Grasp(EventState):
+    def __init__(self, ticks=1, fails=False):
+        super().__init__(outcomes=["held", "lost"], input_keys=["part"], output_keys=["count"])
+        self.ticks, self.fails = ticks, fails
+
+    def on_enter(self, userdata):
+        self.left = self.ticks
+
+    def execute(self, userdata):
+        CALLS.append(userdata.part)
+        if self.fails:
+            self.fails = False
+            raise ValueError("no gripper")
+        self.left -= 1
+        userdata.count = self.left
+        return "held" if self.left <= 0 else None
+
+    def on_exit(self, userdata):
+        CALLS.append("exit")
+"""
+
+INTERFACE = """\
+name: Grasp
+variables: {ticks: {default: 1}, fails: {default: false}}
+input_keys: {part: {}}
+output_keys: {count: {}}
+outcomes: {held: {}, lost: {}}
+code: {flexbe: "grasping:Grasp"}
+"""
+
+HEAD_OF_SCRIPT = "name: pick\noutcomes: [done, failed, preempted]\nuserdata: {part: 7}\nstates:\n"
+STEPS = "transitions: {held: done, lost: failed"
+
+SCRIPTS = {
+    "plain": (f"- A: {{template: Grasp, ticks: 3, {STEPS}}}}}\n", "done", [7, 7, 7, "exit"]),
+    "exception that FlexBE logs": (
+        f"- A: {{template: Grasp, fails: true, {STEPS}}}}}\n", "done", [7, 7, "exit"]),
+    "exception with a transition": (
+        f"- A: {{template: Grasp, fails: true, {STEPS}, error: failed}}}}\n", "failed",
+        [7, "exit"]),
+    "time limit": (
+        f"- A: {{template: Grasp, ticks: 1.0e+9, timeout: 0.01, {STEPS}, timeout: failed,"
+        " preempted: preempted}}\n", "failed", None),
+    "retry": (
+        "- A: {template: Grasp, retry: {on: [held], max: 2}, "
+        "transitions: {exhausted: done, lost: failed, preempted: preempted}}\n",
+        "done", [7, "exit", 7, "exit"]),
+    "branch that another one stops": (
+        "- A:\n    template: Concurrence\n    join: any\n    outcomes: [first, other]\n"
+        "    input_keys: [part]\n    default_outcome: other\n    outcome_map: {first: {B: held}}\n"
+        "    transitions: {first: done, other: failed}\n    states:\n"
+        "    - B: {template: Grasp, ticks: 2}\n"
+        "    - C: {template: Grasp, ticks: 9, remapping: {count: other}}\n",
+        "done", [7, 7, 7, "exit", "exit"]),
+}  # fmt: skip
+"""The states of a script, its outcome, and what the states of FlexBE do; None: it depends on the
+time."""
+
+
+@pytest.fixture
+def grasping(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str], Path]]:
+    """Writes a script whose state type `Grasp` has a class of FlexBE."""
+
+    def written(states: str) -> Path:
+        (tmp_path / "templates").mkdir()
+        (tmp_path / "templates" / "Grasp.yml").write_text(INTERFACE, "utf-8")
+        (tmp_path / "grasping.py").write_text(GRASP, "utf-8")
+        (tmp_path / "main.yml").write_text(HEAD_OF_SCRIPT + states, "utf-8")
+        return tmp_path / "main.yml"
+
+    monkeypatch.setattr(stand_in.EventState, "PERIOD", 0)
+    for name, module in engine_modules().items():
+        monkeypatch.setitem(sys.modules, name, module)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    importlib.invalidate_caches()
+    yield written
+    sys.modules.pop("grasping", None)
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_states_of_flexbe(name: str, grasping: Callable[[str], Path], silent_smach: None) -> None:
+    states, outcome, calls = SCRIPTS[name]
+    script = grasping(states)
+    checked = analyse_script(script).checked
+    assert checked is not None
+    with loaded(build(checked, TARGET, disk_library(script, []), [])) as made:
+        assert run(made)[0] == outcome
+    found = importlib.import_module("grasping").CALLS
+    assert calls in (None, found)
+
+
+def test_other_targets_name_the_way(
+    grasping: Callable[[str], Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    script = grasping(SCRIPTS["plain"][0])
+    assert main(["check", str(script), "-q"]) == 0
+    assert main(["build", str(script), "--target", "python", "-o", str(script.parent / "out")]) == 1
+    error = capsys.readouterr().err
+    assert "the state type `Grasp` has no code for Python" in error
+    assert "it is a class of FlexBE: build it with `--target flexbe`" in error
+
+
+def test_verify_plays_the_paths_of_an_imported_behavior(
+    project: Path, capsys: pytest.CaptureFixture[str], silent_smach: None
+) -> None:
+    assert main(["verify", "project/main.yml", "--targets", "flexbe"]) == 0
+    assert "flexbe: agrees\n" in capsys.readouterr().out

@@ -420,7 +420,8 @@ def _leaf(
     wrapper = module.context.wrappers.get(leaf.type)
     if wrapper is not None:
         module.additions[wrapper] = None
-        made = call(wrapper, [("", made), ("", names(own_outcomes(leaf)))])
+        keys = structure.key_arguments(leaf.inputs, leaf.outputs)
+        made = call(wrapper, [("", made), ("", names(own_outcomes(leaf))), *keys])
     add = added.statement(leaf, made, inside, module, callbacks=callbacks)
     return structure.documentation(added.outer.doc, inside.depth + 1) + add
 
