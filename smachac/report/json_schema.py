@@ -187,7 +187,9 @@ def _field(name: str) -> Schema:
     if name == "states":
         found |= {"type": "array", "items": {"$ref": "#/definitions/item"}}
     elif name in schema.FIELD_CHOICES:
-        found |= {"enum": list(schema.FIELD_CHOICES[name])}
+        choices: Schema = {"enum": list(schema.FIELD_CHOICES[name])}
+        is_name = row.shape == "name"
+        found |= choices if is_name else {"type": "object", "additionalProperties": choices}
     else:
         found |= {"allOf": [{"$ref": f"#/definitions/{row.shape}"}]}
     if name in schema.FIELD_DEFAULTS:
