@@ -251,6 +251,19 @@ LISTED = {
 """Behaviors, and what the import lists for each."""
 
 
+def test_an_outcome_without_a_transition_has_no_proof(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It ends a container of FlexBE never, that of a script by its name."""
+    monkeypatch.chdir(tmp_path)
+    code = behavior("Go()").replace('["there", "lost"]', '["there", "end"]')
+    Path("machine.py").write_text(code.replace(", 'lost': 'end'", ""), "utf-8")
+    assert main(["import", "machine.py", "-o", "project", "-q"]) == 1
+    out = capsys.readouterr().out
+    assert "after `end` of `A` FlexBE logs an error, and a script ends `TourSM`" in out
+    assert "no proof: the graph of main.yml differs" in out
+
+
 @pytest.mark.parametrize("name", LISTED)
 def test_what_is_not_taken_over_is_listed(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

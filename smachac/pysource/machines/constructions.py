@@ -138,8 +138,8 @@ class Constructions:
     the calls that have an effect which is no part of a graph, by their names, `shared` the paths of
     states that are one object with the state of an earlier path, and their places. `modules` are
     those that the classes and the code need, each with the folder in which Python has to search
-    it. `ros` is the version of ROS of the programs; 0: none. `one_rule` and `write_through` are
-    those of the framework."""
+    it. `ros` is the version of ROS of the programs; 0: none. `one_rule`, `write_through`
+    and `same_name_exits` are those of the framework."""
 
     states: Mapping[Names, Construction]
     userdata: Mapping[Names, tuple[Argument, ...]]
@@ -151,6 +151,7 @@ class Constructions:
     ros: int = 0
     one_rule: bool = False
     write_through: bool = False
+    same_name_exits: bool = True
 
 
 def constructions(graph: Graph, evaluator: Evaluator, repository: Repository) -> Constructions:
@@ -207,6 +208,7 @@ class _Reader:
             noted=tuple(dict.fromkeys(noted)), shared=tuple(self._shared()),
             modules=dict(sorted(self.modules.items())), one_rule=self.graph.framework.one_rule,
             write_through=self.graph.framework.write_through,
+            same_name_exits=self.graph.framework.same_name_exits,
             ros=self.graph.framework.ros or self._ros(states),
         )  # fmt: skip
 

@@ -247,6 +247,8 @@ class _Writer:
         self, names: Names, node: Node, parent: Container, scope: _Scope, indent: str
     ) -> list[str]:
         inside = f"{indent}    "
+        if not self.machine.constructions.same_name_exits and isinstance(parent, StateMachine):
+            self.lose_exits(node, parent)
         connections = _connections(node, parent)
         states: list[str] = []
         if isinstance(node, Leaf):
@@ -262,6 +264,14 @@ class _Writer:
             *(f"{inside}{key}: {text}" for key, text in fields.items()),
             *states,
         ]
+
+    def lose_exits(self, node: Node, parent: Container) -> None:
+        """Outcomes without a transition that end a container in a script only."""
+        led = {step.outcome for step in node.transitions}
+        for outcome in outcome_names(node):
+            if outcome not in led and outcome in outcome_names(parent):
+                self.lose(node.span, f"after `{outcome}` of `{node.name}` FlexBE logs an error, and"
+                          f" a script ends `{parent.name}`", "add a transition")  # fmt: skip
 
     def leaf_fields(self, names: Names, leaf: Leaf, scope: _Scope) -> dict[str, str]:
         construction = self.machine.constructions.states[names]
