@@ -147,7 +147,7 @@ def _without_native(machine: Any) -> None:
     while todo:
         for state in todo.pop().get_children().values():
             vars(state).pop("native", None)
-            todo += [state] if hasattr(state, "get_children") else []
+            todo += [state] if getattr(state, "get_children", None) else []
 
 
 def _container_at(root: Any, path: str) -> Any:
