@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterable, Mapping
 from smachac.frontend import schema
 from smachac.ir.robot import MODELS, Robot
 from smachac.ir.types import Type
-from smachac.lsp.complete_flow import success_first
+from smachac.lsp.complete_flow import success_first, transitions
 from smachac.lsp.complete_keys import callbacks, item_keys, key_word
-from smachac.lsp.place import KEY
+from smachac.lsp.place import KEY, VALUE
 from smachac.lsp.word import Completion, Request
 from smachac.robots.files import BUILT_IN
 
@@ -35,6 +35,12 @@ def params_of_call(here: Request) -> list[str]:
 def choices(here: Request) -> Iterable[Completion]:
     words = schema.FIELD_CHOICES.get(here.place.field, ())
     return [Completion(word=word, kind="value") for word in words]
+
+
+def autonomy(here: Request) -> Iterable[Completion]:
+    """The outcomes of a state, and the levels of autonomy."""
+    is_level = here.place.role == VALUE and bool(here.place.inner)
+    return choices(here) if is_level else transitions(here)
 
 
 def robots(here: Request) -> Iterable[Completion]:

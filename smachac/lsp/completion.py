@@ -80,6 +80,7 @@ BY_FIELD: dict[str, Callable[[Request], Iterable[Completion]]] = {
     "template": complete_templates.templates,
     "script": complete_templates.scripts,
     "transitions": complete_flow.transitions,
+    "autonomy": complete_values.autonomy,
     "remapping": complete_keys.remapping,
     "input_keys": complete_keys.declared_keys,
     "output_keys": complete_keys.declared_keys,

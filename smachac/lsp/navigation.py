@@ -49,7 +49,7 @@ def named_at(place: Place, facts: Facts) -> Named | None:
     match field:
         case "transitions" if role == VALUE and depth == 1 and around is not None:
             return _child_or_outcome(around, word, facts)
-        case "transitions" if role == KEY:
+        case "transitions" | "autonomy" if role == KEY:
             return _outcome(body, word, facts)
         case "outcomes" | "default_outcome" | "exhausted_outcome":
             return _outcome(body, word, facts)

@@ -286,6 +286,9 @@ def _rename_in_container(renaming: Renaming, container: Container, child: Node) 
             raise RefusedError(child.span, message, help)
         else:
             renaming.replace_word(step.span)
+    for level in child.autonomy:
+        if level.outcome == renaming.old:
+            renaming.replace_word(level.span)
     match container:
         case nodes.Concurrence():
             for rule in container.rules:
