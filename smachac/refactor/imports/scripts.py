@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import itertools
 import re
+from collections import Counter
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from pathlib import Path
 
@@ -358,10 +359,10 @@ class _Writer:
                           " an input", "remove the value or the input")  # fmt: skip
         if not isinstance(node, Concurrence):
             return
+        uses = Counter(key for child in node.children
+                       for key in {*outer_inputs(child), *outer_outputs(child)})  # fmt: skip
         for child in written_children(node):
-            others = {key for other in node.children if other is not child
-                      for key in (*outer_inputs(other), *outer_outputs(other))}  # fmt: skip
-            shared = [key for key in outer_outputs(child) if key in others]
+            shared = [key for key in outer_outputs(child) if uses[key] > 1]
             if not isinstance(child, Leaf) and shared:
                 keys = ", ".join(f"`{key}`" for key in shared)
                 self.lose(child.span, f"the other states of `{node.name}` get {keys} of"
