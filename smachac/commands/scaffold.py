@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from keyword import iskeyword
 
-from smachac.checks.type_words import named
+from smachac.checks.findings.type_words import named
 from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.frontend.loader import Library
 from smachac.frontend.types.type_names import Aliases, filled

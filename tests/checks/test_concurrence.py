@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from smachac.analysis import outcome_rules
 from smachac.analysis.outcome_rules import Combination, Rules, UndecidedError, sound_concurrence
-from smachac.checks.concurrence.combinations import written
+from smachac.checks.findings.combinations import written
 from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from smachac.ir.nodes import Concurrence, Node, StateMachine
 from tests.support.examples import examples

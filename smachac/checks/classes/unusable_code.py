@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from smachac.analysis.context import Context
-from smachac.checks import notation
-from smachac.checks.classes.types_with_code import used_here
+from smachac.checks.findings import notation
+from smachac.checks.findings.types_with_code import used_here
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span

@@ -22,7 +22,6 @@ from smachac.analysis.expression_errors import is_method, kinds, type_text
 from smachac.analysis.expression_types import type_of_call
 from smachac.analysis.function_slots import named_functions
 from smachac.analysis.type_inference import TypeFlow
-from smachac.checks.classes.class_value_types import none_writes
 from smachac.checks.code.function_results import (
     NONE_EFFECTS,
     WAIT_FAILS,
@@ -33,10 +32,11 @@ from smachac.checks.code.function_results import (
     slot_owner,
 )
 from smachac.checks.code.outcome_results import wrong_outcomes
-from smachac.checks.help_text import calls, in_quotes_for, other_place
+from smachac.checks.findings.class_value_types import none_writes
+from smachac.checks.findings.help_text import calls, in_quotes_for, other_place
+from smachac.checks.findings.number_help import suggested_number
+from smachac.checks.findings.type_origins import written
 from smachac.checks.rule import rule
-from smachac.checks.types.number_help import suggested_number
-from smachac.checks.types.type_origins import written
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span

@@ -12,7 +12,7 @@ from smachac.analysis.expression_types import type_of_call
 from smachac.analysis.function_slots import named_functions
 from smachac.analysis.type_lattice import unit_of
 from smachac.analysis.units import conversion
-from smachac.checks.help_text import calls, other_place
+from smachac.checks.findings.help_text import calls, other_place
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span
 from smachac.ir.code_places import node_place

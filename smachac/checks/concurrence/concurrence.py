@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import has_no_interface
+from smachac.analysis.iterator_stops import turned_renames
 from smachac.analysis.outcome_rules import (
     Combination,
     SoundConcurrence,
@@ -15,14 +16,13 @@ from smachac.analysis.outcome_rules import (
     without_other,
 )
 from smachac.analysis.possible_outcomes import Judged
-from smachac.checks import notation
-from smachac.checks.concurrence.combinations import written
-from smachac.checks.concurrence.inverted_rules import inverted_rules, transposed_rules
-from smachac.checks.help_text import calls, did_you_mean, ends_of, other_place
+from smachac.analysis.watched_branches import missing_joins
+from smachac.checks.findings import notation
+from smachac.checks.findings.combinations import written
+from smachac.checks.findings.help_text import calls, did_you_mean, ends_of, other_place
+from smachac.checks.findings.inverted_rules import inverted_rules, transposed_rules
+from smachac.checks.findings.value_places import place_of_value
 from smachac.checks.rule import rule
-from smachac.checks.timing.iterator_stops import turned_renames
-from smachac.checks.timing.watched_branches import missing_joins
-from smachac.checks.types.value_places import place_of_value
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed

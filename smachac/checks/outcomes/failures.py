@@ -10,9 +10,9 @@ from smachac.analysis.control_flow import MOST_STEPS
 from smachac.analysis.failure_paths import starts_failure
 from smachac.analysis.outcome_rules import Combination, SoundConcurrence, Space, UndecidedError
 from smachac.analysis.possible_outcomes import Judged
-from smachac.checks import notation
-from smachac.checks.concurrence.combinations import written
-from smachac.checks.help_text import calls, other_place, own_name
+from smachac.checks.findings import notation
+from smachac.checks.findings.combinations import written
+from smachac.checks.findings.help_text import calls, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity, ended, entered
 from smachac.diagnostics.source import Span

@@ -8,8 +8,8 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from smachac.checks.help_text import calls, other_place
-from smachac.checks.types.value_places import place_of_part
+from smachac.checks.findings.help_text import calls, other_place
+from smachac.checks.findings.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding
 from smachac.diagnostics.source import Span
 from smachac.ir.leaf import default_outcome, functions, variable, variable_of

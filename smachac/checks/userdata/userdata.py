@@ -9,12 +9,12 @@ from functools import cache
 from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.error_recovery import is_around_open, lacking_inputs, unknown_remaps
+from smachac.analysis.message_keys import remapped_fields
 from smachac.analysis.type_inference import Types
 from smachac.analysis.unset_reads import Missing, Searches, container_name, provided_keys, reader_at
-from smachac.checks import notation
-from smachac.checks.edits import likely, listing, with_input, with_output
-from smachac.checks.help_text import calls, did_you_mean, other_place
-from smachac.checks.ros.message_keys import remapped_fields
+from smachac.checks.findings import notation
+from smachac.checks.findings.edits import likely, listing, with_input, with_output
+from smachac.checks.findings.help_text import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.userdata.initial_presets import missing_together, together_finding
 from smachac.checks.userdata.unset_read_findings import fitting_keys, unset_read

@@ -7,9 +7,10 @@ from collections.abc import Collection, Iterator
 from typing import Literal
 
 from smachac.analysis.context import Context
-from smachac.checks import notation
-from smachac.checks.classes.renamed_names import renamed_in_interface
-from smachac.checks.classes.types_with_code import (
+from smachac.checks.findings import notation
+from smachac.checks.findings.help_text import did_you_mean
+from smachac.checks.findings.renamed_names import renamed_in_interface
+from smachac.checks.findings.types_with_code import (
     declared_here,
     first_of_each,
     leaves_by_type,
@@ -17,7 +18,6 @@ from smachac.checks.classes.types_with_code import (
     own_names,
     used_here,
 )
-from smachac.checks.help_text import did_you_mean
 from smachac.diagnostics.diagnostic import Finding
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser

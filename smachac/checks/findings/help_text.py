@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import takewhile
 
-from smachac.checks import notation
+from smachac.checks.findings import notation
 from smachac.diagnostics.diagnostic import Related
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir.leaf import variable_of

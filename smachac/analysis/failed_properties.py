@@ -12,7 +12,7 @@ from smachac.analysis.control_flow import (
     unhandled,
     unknown_outcomes,
 )
-from smachac.checks.properties.property_turns import Turn, turn_of
+from smachac.analysis.property_turns import Turn, turn_of
 from smachac.ir.properties import Property
 from smachac.ir.traversal import outcome_names
 

@@ -23,23 +23,23 @@ from smachac.analysis.type_lattice import (
     widened,
 )
 from smachac.analysis.units import conversion
-from smachac.checks.help_text import calls, did_you_mean, other_place
-from smachac.checks.type_words import HELP, example, in_words, named, place_in_words
-from smachac.checks.types.number_help import (
+from smachac.checks.findings.help_text import calls, did_you_mean, other_place
+from smachac.checks.findings.number_help import (
     decimal_commas,
     sizes_of,
     suggested_list,
     suggested_number,
     suggested_rotation,
 )
-from smachac.checks.types.record_fields import (
+from smachac.checks.findings.record_fields import (
     missing_fields,
     misspelt_fields,
     misspelt_help,
     without_fields,
 )
-from smachac.checks.types.type_origins import cell_owner, is_promised, written
-from smachac.checks.types.value_places import part_at, place_of_part, steps_to_misfit, type_at
+from smachac.checks.findings.type_origins import cell_owner, is_promised, written
+from smachac.checks.findings.type_words import HELP, example, in_words, named, place_in_words
+from smachac.checks.findings.value_places import part_at, place_of_part, steps_to_misfit, type_at
 from smachac.diagnostics.diagnostic import Finding, Related
 from smachac.diagnostics.meanings import of_same_meaning
 from smachac.diagnostics.source import NOWHERE, Span

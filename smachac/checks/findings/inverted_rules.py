@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from smachac.analysis.control_flow import has_no_interface
-from smachac.checks import notation
+from smachac.checks.findings import notation
 from smachac.ir.nodes import Concurrence, OutcomeRule
 from smachac.ir.traversal import outcome_names
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from itertools import pairwise, takewhile
 from typing import Literal
 
-from smachac.checks import notation
+from smachac.checks.findings import notation
 from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.diagnostics.spelling import is_plain

@@ -4,8 +4,8 @@ its part, also in the call of a sub-script, and the state that reads it."""
 from __future__ import annotations
 
 from smachac.analysis.type_inference import TypeFlow
-from smachac.checks.help_text import calls, other_place
-from smachac.checks.types.value_places import WHOLE, Part, place_of_part
+from smachac.checks.findings.help_text import calls, other_place
+from smachac.checks.findings.value_places import WHOLE, Part, place_of_part
 from smachac.diagnostics.diagnostic import Finding, Related
 
 

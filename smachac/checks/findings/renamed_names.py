@@ -6,7 +6,7 @@ from collections.abc import Collection
 from pathlib import PurePath
 from typing import Literal, NamedTuple
 
-from smachac.checks.help_text import other_place
+from smachac.checks.findings.help_text import other_place
 from smachac.diagnostics.diagnostic import Related
 from smachac.diagnostics.negation import is_negation
 from smachac.diagnostics.source import Word

@@ -25,9 +25,9 @@ from smachac.analysis.type_lattice import (
     present,
     widened,
 )
-from smachac.checks.classes.types_with_code import leaves_by_type
-from smachac.checks.help_text import did_you_mean, other_place
-from smachac.checks.type_words import HELP, example, in_words
+from smachac.checks.findings.help_text import did_you_mean, other_place
+from smachac.checks.findings.type_words import HELP, example, in_words
+from smachac.checks.findings.types_with_code import leaves_by_type
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.meanings import by_words
 from smachac.diagnostics.spelling import guesser

@@ -8,9 +8,9 @@ from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import Fault, FaultKind
 from smachac.analysis.expression_sites import ExpressionSite
 from smachac.analysis.units import conversion
-from smachac.checks.help_text import calls, did_you_mean, in_quotes_for, other_place
-from smachac.checks.types.type_origins import written
-from smachac.checks.types.value_places import place_of_fault
+from smachac.checks.findings.help_text import calls, did_you_mean, in_quotes_for, other_place
+from smachac.checks.findings.type_origins import written
+from smachac.checks.findings.value_places import place_of_fault
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser, respelt

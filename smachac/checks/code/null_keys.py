@@ -10,10 +10,10 @@ from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.expression_errors import function_faults
 from smachac.analysis.null_guards import excludes_null
 from smachac.analysis.type_lattice import NONE, mapping, present
-from smachac.checks.help_text import other_place
-from smachac.checks.types.value_places import place_of_fault
-from smachac.checks.userdata.candidate_keys import may_be, unread_output
-from smachac.checks.userdata.used_keys import sees_everything
+from smachac.analysis.used_keys import sees_everything
+from smachac.checks.findings.candidate_keys import may_be, unread_output
+from smachac.checks.findings.help_text import other_place
+from smachac.checks.findings.value_places import place_of_fault
 from smachac.diagnostics.diagnostic import Finding
 from smachac.ir.leaf import functions
 from smachac.ir.nodes import Container, Leaf, Preset

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from smachac.analysis.type_inference import Cell, TypeFlow
-from smachac.checks.type_words import in_words
+from smachac.checks.findings.type_words import in_words
 from smachac.ir import nodes
 
 

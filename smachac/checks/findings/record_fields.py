@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from smachac.analysis.type_inference import Clash
 from smachac.analysis.type_lattice import fields
-from smachac.checks.types.value_places import part_at, steps_to_misfit
+from smachac.checks.findings.value_places import part_at, steps_to_misfit
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.nodes import Struct

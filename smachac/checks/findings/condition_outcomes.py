@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from smachac.checks.edits import adding_outcome
-from smachac.checks.help_text import calls, did_you_mean
-from smachac.checks.types.value_places import place_of_part
+from smachac.checks.findings.edits import adding_outcome
+from smachac.checks.findings.help_text import calls, did_you_mean
+from smachac.checks.findings.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.checks import notation
-from smachac.checks.help_text import other_place
+from smachac.checks.findings import notation
+from smachac.checks.findings.help_text import other_place
 from smachac.diagnostics.diagnostic import Related
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.ir import nodes

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import is_unknown, misfit
-from smachac.checks.help_text import added_remapping
+from smachac.checks.findings.help_text import added_remapping
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import words_of
 from smachac.ir import nodes
