@@ -27,12 +27,11 @@ from smachac.checks.code.function_results import (
     WAIT_FAILS,
     always_true,
     overwritten_keys,
-    readable_slots,
     silent_functions,
-    slot_owner,
 )
 from smachac.checks.code.outcome_results import wrong_outcomes
 from smachac.checks.findings.class_value_types import none_writes
+from smachac.checks.findings.code_findings import readable_slots, slot_owner
 from smachac.checks.findings.help_text import calls, in_quotes_for, other_place
 from smachac.checks.findings.number_help import suggested_number
 from smachac.checks.findings.type_origins import written

@@ -16,8 +16,8 @@ from smachac.checks.findings.class_value_types import (
     wrong_operations,
     wrong_parts,
 )
+from smachac.checks.findings.code_findings import code_owner, fault_finding, faults_of
 from smachac.checks.findings.help_text import calls
-from smachac.checks.findings.operand_findings import code_owner, fault_finding, faults_of
 from smachac.checks.findings.value_places import place_of_part
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity

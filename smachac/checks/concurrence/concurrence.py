@@ -18,8 +18,13 @@ from smachac.analysis.outcome_rules import (
 from smachac.analysis.possible_outcomes import Judged
 from smachac.analysis.watched_branches import missing_joins
 from smachac.checks.findings import notation
-from smachac.checks.findings.combinations import written
-from smachac.checks.findings.help_text import calls, did_you_mean, ends_of, other_place
+from smachac.checks.findings.help_text import (
+    calls,
+    did_you_mean,
+    ends_of,
+    in_conditions,
+    other_place,
+)
 from smachac.checks.findings.inverted_rules import inverted_rules, transposed_rules
 from smachac.checks.findings.value_places import place_of_value
 from smachac.checks.rule import rule
@@ -249,8 +254,8 @@ def _rules_for_both(each: Judged) -> Iterator[Finding]:
             continue
         yield Finding(
             span=entry.span,
-            message=f"the rule for `{entry.outcome}` needs {written(needed)}, but `join: any` of"
-            f" `{node.name}` preempts the others when the first of them ends",
+            message=f"the rule for `{entry.outcome}` needs {in_conditions(needed)}, but `join:"
+            f" any` of `{node.name}` preempts the others when the first of them ends",
             arguments=(entry.outcome, *_names(needed)),
             help="write `join: all`, or list only one of them in the rule",
             effect="",
@@ -419,7 +424,7 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
         if missed is None:
             continue
         needed = rules.shown(missed, {}, rules.all)
-        shown = written(needed) or "any combination"
+        shown = in_conditions(needed) or "any combination"
         if node.default_outcome:
             severity, span = Severity.INFO, node.default_span
             message = f"no rule of `{node.name}` matches {shown}: it ends with the default outcome"
@@ -608,7 +613,7 @@ def _overlapping(each: Judged, number: int, tie: Combination) -> Finding:
     return Finding(
         span=here.span,
         message=f"the rules for `{above.outcome}` and `{below.outcome}` both hold for"
-        f" {written(tie)}: SMACH for Noetic ends with `{above.outcome}`, SMACH for ROS 2 with"
+        f" {in_conditions(tie)}: SMACH for Noetic ends with `{above.outcome}`, SMACH for ROS 2 with"
         f" `{below.outcome}`",
         arguments=(above.outcome, below.outcome, *_names(tie)),
         help="add a condition to the rule that must win, as in"

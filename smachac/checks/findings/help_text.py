@@ -77,3 +77,8 @@ def added_remapping(node: Node, key: str, to: str) -> str:
     if node.remaps:
         return f"add `{notation.entry(node, key, to)}` to the `remapping` of `{node.name}`"
     return f"write `{notation.mapping(node, 'remapping', [(key, to)])}` in `{node.name}`"
+
+
+def in_conditions(combination: Mapping[str, str]) -> str:
+    """A combination of outcomes of a concurrence, as a script writes its conditions."""
+    return ", ".join(f"`{child}: {outcome}`" for child, outcome in combination.items())

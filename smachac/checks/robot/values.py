@@ -472,7 +472,7 @@ def doubtful_unit(context: Context) -> Iterator[Finding]:
     for type_ in types.values():
         yield from _doubtful_defaults(type_)
     if context.expression_faults:
-        from smachac.checks.findings.operand_findings import doubtful_comparisons
+        from smachac.checks.robot.units import doubtful_comparisons
 
         yield from doubtful_comparisons(context)
     if context.leaves_with_class:

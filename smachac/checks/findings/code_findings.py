@@ -1,13 +1,15 @@
-"""Findings about the operands of an expression: units, comparisons, origins of the values."""
+"""Findings about the code of a state: the owner of the code in a message, the faults of its
+expressions with the origins of the values."""
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterator
 
+from smachac.analysis.code_slots import CodeSlot
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import Fault, FaultKind
 from smachac.analysis.expression_sites import ExpressionSite
-from smachac.analysis.units import conversion
 from smachac.checks.findings.help_text import calls, did_you_mean, in_quotes_for, other_place
 from smachac.checks.findings.type_origins import written
 from smachac.checks.findings.value_places import place_of_fault
@@ -15,48 +17,28 @@ from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.ir.expressions import print_expression
-from smachac.ir.nodes import Leaf, is_number
-from smachac.records import replace
+from smachac.ir.nodes import Node
 
 MOST_SOURCES = 3
 """Limit on the origins of values that a finding shows."""
 
 
-def mixed_units(context: Context) -> Iterator[Finding]:
-    """The operations on numbers with different units (SM504)."""
-    for site, fault in faults_of(context, "unit"):
-        finding = fault_finding(site, fault, f"in {code_owner(site)}, {fault.what}")
-        value = _in_other_unit(site, fault)
-        yield replace(finding, help=f"{finding.help}, {value}") if value else finding
+def readable_slots(context: Context) -> Iterator[tuple[str, Node, CodeSlot, ast.expr]]:
+    """The code slots of a machine whose code Python can read."""
+    for path, node, slot in context.code_slots:
+        tree = slot.tree
+        if tree is not None:
+            yield path, node, slot, tree
 
 
-def doubtful_comparisons(context: Context) -> Iterator[Finding]:
-    """The comparisons of values in radians with numbers that seem to be in degrees (SM522)."""
-    for site, fault in faults_of(context, "doubt"):
-        yield fault_finding(site, fault, f"in {code_owner(site)}, {fault.what}")
-
-
-def _in_other_unit(site: ExpressionSite, fault: Fault) -> str:
-    """The end of the help for a number in another unit: the initial value of its key in the right
-    one; empty if it has not one value in the script."""
-    text, given, wanted = fault.units or ("", "", "")
-    factor = conversion(given, wanted)
-    for key in fault.keys:
-        cell = site.cells.get(key)
-        flows = cell.flows.values() if cell is not None else ()
-        origins = list(dict.fromkeys(alike[0].origin.cell for alike in flows))
-        factor = conversion(given, wanted)
-        if factor is None or text != f"ud.{key}" or len(origins) != 1:
-            continue
-        node, name = origins[0].node, origins[0].key
-        if node is None or isinstance(node, Leaf):
-            continue
-        for preset in node.userdata:
-            if preset.key == name and is_number(preset.value.data) and preset.type.args == (given,):
-                number = f"{preset.value.data * factor:.6g}"
-                new = f"{{type: {preset.type.name}<{wanted}>, value: {number}}}"
-                return f"or write `{name}: {new}` in the `userdata` of `{node.name}`"
-    return ""
+def slot_owner(slot: CodeSlot, node: Node) -> str:
+    """The place of a slot, as part of a message."""
+    match slot.role:
+        case "callbacks":
+            return f"the callback `{slot.name}` of `{node.name}`"
+        case "conditions":
+            return f"the condition `{slot.name}` of `{node.name}`"
+    return f"`{slot.name}` of `{node.name}`"
 
 
 def faults_of(context: Context, kind: FaultKind) -> Iterator[tuple[ExpressionSite, Fault]]:
