@@ -88,6 +88,7 @@ from smachac.frontend.text.fields import (
     wrong,
 )
 from smachac.frontend.text.file_kinds import OTHER_FILES, kind_of_tree
+from smachac.frontend.text.type_names import Aliases
 from smachac.frontend.text.yaml_tree import (
     Entry,
     Map,
@@ -103,7 +104,6 @@ from smachac.frontend.types.type_annotations import (
     read_aliases,
     typed,
 )
-from smachac.frontend.types.type_names import Aliases
 from smachac.ir.nodes import FixedParam, Preset, StateType
 from smachac.pysource.template_sources import TEMPLATE_FILES
 from smachac.records import dataclass, field, replace
