@@ -18,7 +18,7 @@ from smachac.analysis.control_flow import (
 from smachac.analysis.incremental_facts import Fact, IncrementalResult, Preorder, found_at
 from smachac.ir import nodes, traversal
 from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine, StateType
-from smachac.pysource.user_code import CodeFacts, ProjectCode
+from smachac.pysource.modules.user_code import CodeFacts, ProjectCode
 
 if TYPE_CHECKING:
     from smachac.analysis.accesses import Accesses

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from smachac.driver import IncrementalState, MachineCheck
     from smachac.driver.batch import Batch
     from smachac.frontend.files import Disk
-    from smachac.pysource.coverage import Coverage
+    from smachac.pysource.machines.coverage import Coverage
     from smachac.refactor.autofix import FixResult
 
 EXAMPLES = """\

@@ -105,7 +105,7 @@ from smachac.frontend.types.type_annotations import (
     typed,
 )
 from smachac.ir.nodes import FixedParam, Preset, StateType
-from smachac.pysource.template_sources import TEMPLATE_FILES
+from smachac.pysource.templates.template_sources import TEMPLATE_FILES
 from smachac.records import dataclass, field, replace
 
 TYPE_CHECKING = False  # annotations only: most scripts have no functions or robot

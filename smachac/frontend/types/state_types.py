@@ -55,7 +55,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.ir.types import ANY, Type, optional
-from smachac.pysource.template_sources import TEMPLATE_FILES
+from smachac.pysource.templates.template_sources import TEMPLATE_FILES
 from smachac.records import replace
 
 TYPE_CHECKING = False  # annotations only: most state types have no class
