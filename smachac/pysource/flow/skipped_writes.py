@@ -1,6 +1,6 @@
 """Skipped writes: the userdata keys that a function sets only on some paths to a `return`.
 
-A lower bound, beside the upper bound of python_flow. A key is skipped where a branch, an exception
+A lower bound, beside the upper bound of flow.py. A key is skipped where a branch, an exception
 or the end of a loop leads past the statement that sets it, straight to a `return`. Conditions are
 not evaluated; so a key counts as set wherever a later condition can depend on it, where a condition
 was examined before, where a loop may have no round, and behind a chain of `elif` without `else`.
