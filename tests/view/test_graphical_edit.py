@@ -17,10 +17,10 @@ from smachac.diff.comparison import Change, compare
 from smachac.driver import Analysis, analyse_script
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, StateMachine
 from smachac.ir.traversal import outcome_names, walk
-from smachac.refactor.edit import BadEditError, Edit, EditResult, edit_of, perform
 from smachac.refactor.edited_script import EditedScript, HasErrorsError
 from smachac.refactor.editor import RefusedError
 from smachac.refactor.locate import NotFoundError
+from smachac.view.graphical_edit import BadEditError, Edit, EditResult, edit_of, perform
 from tests.refactor.test_refactorings import comments, project, texts
 from tests.support.examples import seeds
 
