@@ -252,7 +252,7 @@ def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:
     later = {str(entry.key.value): entry.key.span for entry in own.entries}
     inner.later = later
     for entry in own.entries:
-        del later[str(entry.key.value)]
+        later.pop(str(entry.key.value), None)  # a key that is written twice is reported before
         value = fill_in(entry.value, inner, report)
         if value is not entry.value and _size_beyond(value, MAX_NODES):
             message = f"the look-ups in this param give it more than {MAX_NODES:,} values"
