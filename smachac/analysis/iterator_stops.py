@@ -9,7 +9,7 @@ from smachac.ir.nodes import Container
 from smachac.ir.traversal import outcome_names
 
 
-def turned_renames(container: Container) -> list[tuple[str, str]]:
+def inverted_renames(container: Container) -> list[tuple[str, str]]:
     """The entries of the final outcome map of an iterator in which the two names have changed
     places: its state ends with the second one only."""
     if not isinstance(container, nodes.Iterator) or any(map(has_no_interface, container.children)):

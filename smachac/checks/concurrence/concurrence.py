@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import has_no_interface
-from smachac.analysis.iterator_stops import turned_renames
+from smachac.analysis.iterator_stops import inverted_renames
 from smachac.analysis.outcome_rules import (
     Combination,
     SoundConcurrence,
@@ -298,15 +298,15 @@ def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:
     for (name, result), span in zip(container.final_map if endings else (), spans, strict=False):
         if name in known:
             continue
-        inverted = (name, result) in turned_renames(container)
-        turned = f"write `{notation.entry(container, result, name)}`: the outcome that is renamed"
-        turned += " comes first"
+        inverted = (name, result) in inverted_renames(container)
+        in_order = f"write `{notation.entry(container, result, name)}`: the outcome that is renamed"
+        in_order += " comes first"
         yield Finding(
             span=span,
             message=f"the final outcome map of `{container.name}` renames `{name}`, but its state"
             " never ends with that outcome",
             arguments=(name,),
-            help=(turned if inverted else did_you_mean(guesser(known)(name)))
+            help=(in_order if inverted else did_you_mean(guesser(known)(name)))
             or f"use one of the outcomes with which it can end: {listed(known)}",
             effect="SMACH never uses the entry",
             related=calls(container, span),

@@ -29,13 +29,13 @@ def misspelt_fields(clash: Clash) -> Iterator[tuple[str, str]]:
     others = [field for field in fields(given) if field not in fields(wanted)] if missing else []
     for name in missing:
         near = guesser(others)(name) or next(
-            (other for other in others if is_turned_field(clash, name, other)), None
+            (other for other in others if is_inverted_field(clash, name, other)), None
         )
         if near is not None:
             yield name, near
 
 
-def is_turned_field(clash: Clash, name: str, other: str) -> bool:
+def is_inverted_field(clash: Clash, name: str, other: str) -> bool:
     """Whether a literal has `other: name` in place of the field `name`."""
     value = clash.flow.value
     if not isinstance(value, tuple | Struct):
@@ -45,9 +45,9 @@ def is_turned_field(clash: Clash, name: str, other: str) -> bool:
 
 
 def misspelt_help(clash: Clash) -> str | None:
-    """The help for the first field of a record that is misspelt or turned round."""
+    """The help for the first field of a record that is misspelt or inverted."""
     for name, near in misspelt_fields(clash):
-        if is_turned_field(clash, name, near):
+        if is_inverted_field(clash, name, near):
             return f"write `{name}: {near}`: the name of the field comes first"
         return f"did you mean `{name}` in place of `{near}`?"
     return None

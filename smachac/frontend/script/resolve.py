@@ -72,9 +72,9 @@ from smachac.frontend.script.sub_scripts import (
 )
 from smachac.frontend.script.unknown_templates import (
     Searched,
-    meant_container,
     missing_template,
     missing_template_help,
+    suggested_container,
     unknown_template,
 )
 from smachac.frontend.script.unused import Mark, Uses
@@ -747,7 +747,7 @@ class _Resolver:
             called = [] if role or is_known else self.library.script_names(around.source.name)
             found_in = Searched(searched, names, known, called, other)
             self.not_found(word.text, unknown_template(word, read, found_in, self.other_type))
-            kind = schema.CONTAINERS.get(near or meant_container(word.text, entries))
+            kind = schema.CONTAINERS.get(near or suggested_container(word.text, entries))
             if kind is not None:
                 return schema.CONTAINER_TYPES[kind], kind
             return StateType(name=word.text, open=True), role or nested

@@ -290,7 +290,7 @@ def _quoted_type(found: re.Match[str], stop: _Stop) -> str:
 _OPENING = {"]": "[", "}": "{"}
 
 
-def _open_or_stray(stop: _Stop) -> _Fault | None:
+def _unclosed_or_unopened(stop: _Stop) -> _Fault | None:
     """A bracket or a quote without its counterpart."""
     unclosed = _UNCLOSED.fullmatch(stop.problem)
     if unclosed is not None and stop.first is not None:
@@ -792,7 +792,7 @@ def _other_parts(stop: _Stop) -> _Fault | None:
 
 
 _READERS = (
-    *(_conflict, _space, _block_text, _anchor, _open_or_stray),
+    *(_conflict, _space, _block_text, _anchor, _unclosed_or_unopened),
     *(_colon, _indentation, _value, _other_parts),
 )
 """The searches for the cause of a syntax error; the first one that finds it decides."""
