@@ -27,7 +27,7 @@ from smachac.analysis.type_lattice import (
 )
 from smachac.checks.findings.help_text import did_you_mean, other_place
 from smachac.checks.findings.type_words import HELP, example, in_words
-from smachac.checks.findings.types_with_code import leaves_by_type
+from smachac.checks.findings.types_with_code import own_types, used_here
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.meanings import by_words
 from smachac.diagnostics.spelling import guesser
@@ -48,10 +48,7 @@ MADE = {"str": STR, "repr": STR, "float": FLOAT, "bool": BOOL, "len": Type("int"
 
 def wrong_writes(context: Context) -> Iterator[Finding]:
     """The literals that a class writes to an output key whose type they do not fit (SM304)."""
-    for path, leaf, facts in leaves_by_type(context, declared=True):
-        type_ = context.machine.state_types.get(leaf.type)
-        if type_ is None or type_.built_in or type_.open:
-            continue
+    for path, leaf, type_, facts in own_types(context, declared=True):
         keys = {key.name: key for key in type_.output_keys}
         for name, written in facts.values:
             key = keys.get(name)
@@ -81,7 +78,7 @@ def wrong_writes(context: Context) -> Iterator[Finding]:
                 or f"write a value of the type `{key.type}`{such}, or correct the interface",
                 related=(
                     *other_place(key.span, f"the interface declares `{name}`"),
-                    *other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+                    *used_here(leaf),
                 ),
                 node=path,
             )
@@ -130,10 +127,7 @@ def _plain_help(text: str, type_: Type) -> str | None:
 def none_writes(context: Context) -> Iterator[Finding]:
     """The results of methods such as `append`, which are None, that a class writes to a key
     (SM318)."""
-    for path, leaf, facts in leaves_by_type(context, declared=True):
-        type_ = context.machine.state_types.get(leaf.type)
-        if type_ is None or type_.built_in or type_.open:
-            continue
+    for path, leaf, type_, facts in own_types(context, declared=True):
         types = {key.name: present(key.type) for key in (*type_.input_keys, *type_.output_keys)}
         for name, written in facts.values:
             found = _changed_key(written.text)
@@ -153,7 +147,7 @@ def none_writes(context: Context) -> Iterator[Finding]:
                 arguments=(leaf.type, name, method),
                 help=help,
                 effect=f"`{name}` gets the value None",
-                related=other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+                related=used_here(leaf),
                 node=path,
             )
 
@@ -212,7 +206,7 @@ def wrong_loops(context: Context) -> Iterator[Finding]:
                     if declared.name == "int"
                     else "loop over a list, or correct the type in the interface",
                     effect="Python cannot loop over a number: the machine stops with an error",
-                    related=other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+                    related=used_here(leaf),
                     node=path,
                 )
             elif is_unknown(declared) and number:
@@ -231,10 +225,7 @@ def wrong_loops(context: Context) -> Iterator[Finding]:
 def wrong_operations(context: Context, kind: FaultKind) -> Iterator[Finding]:
     """The comparisons and calculations of a class that the types of its input keys do not support
     (SM311), or that seem to be in another unit (SM522)."""
-    for path, leaf, facts in leaves_by_type(context, declared=True):
-        type_ = context.machine.state_types.get(leaf.type)
-        if type_ is None or type_.built_in or type_.open or not facts.operations:
-            continue
+    for path, leaf, type_, facts in own_types(context, declared=True):
         types = {key.name: key.type for key in type_.input_keys}
         lists = {name for name, type_ in types.items() if present(type_).name in ("list", "array")}
         for word in facts.operations:
@@ -262,7 +253,7 @@ def wrong_operations(context: Context, kind: FaultKind) -> Iterator[Finding]:
                             for span in places
                             for place in other_place(span, "the type of the key is declared here")
                         ),
-                        *other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+                        *used_here(leaf),
                     ),
                     severity=Severity.WARNING,
                     node=path,
@@ -279,10 +270,7 @@ def _words_of(type_: Type) -> list[str]:
 def wrong_comparisons(context: Context) -> Iterator[Finding]:
     """The comparisons of a class with words that a variable or an input key cannot have by its
     interface (SM312)."""
-    for path, leaf, facts in leaves_by_type(context, declared=True):
-        type_ = context.machine.state_types.get(leaf.type)
-        if type_ is None or type_.built_in or type_.open or not facts.compared:
-            continue
+    for path, leaf, type_, facts in own_types(context, declared=True):
         keys = {key.name: key for key in type_.input_keys}
         done = set[str]()
         for compared in facts.compared:
@@ -307,7 +295,7 @@ def wrong_comparisons(context: Context) -> Iterator[Finding]:
                 help=f"write {' or '.join(written)}, or correct the interface",
                 related=(
                     *(other_place(key.span, f"the interface declares `{key.name}`") if key else ()),
-                    *other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+                    *used_here(leaf),
                 ),
                 node=path,
             )
@@ -329,10 +317,7 @@ def _used_values(context: Context, type_: str, look_up: TableLookUp) -> set[obje
 def missing_choices(context: Context) -> Iterator[Finding]:
     """The dictionaries of a class that lack a word of the variable or input key that it looks up in
     them (SM311)."""
-    for path, leaf, facts in leaves_by_type(context, declared=True):
-        type_ = context.machine.state_types.get(leaf.type)
-        if type_ is None or type_.built_in or type_.open or not facts.tables:
-            continue
+    for path, leaf, type_, facts in own_types(context, declared=True):
         keys = {key.name: key.type for key in type_.input_keys}
         variables = {name: variable.type for name, variable in type_.variables.items()}
         done = set[tuple[str, str]]()
@@ -362,7 +347,7 @@ def missing_choices(context: Context) -> Iterator[Finding]:
                 arguments=(leaf.type, table.table, table.name),
                 help=help,
                 effect="the code raises KeyError for this value: the machine stops",
-                related=other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+                related=used_here(leaf),
                 severity=Severity.WARNING,
                 node=path,
             )
@@ -395,10 +380,7 @@ FIELDS = frozenset([*COORDINATES, "position", "orientation", "pose", "data"])
 
 def wrong_parts(context: Context) -> Iterator[Finding]:
     """The attributes and indexes of an input key that its type does not have (SM311)."""
-    for path, leaf, facts in leaves_by_type(context, declared=True):
-        type_ = context.machine.state_types.get(leaf.type)
-        if type_ is None or type_.built_in or type_.open:
-            continue
+    for path, leaf, type_, facts in own_types(context, declared=True):
         keys = {key.name: key for key in type_.input_keys}
         for part in facts.parts:
             key = keys.get(part.key)
@@ -425,7 +407,7 @@ def wrong_parts(context: Context) -> Iterator[Finding]:
                 help=help,
                 related=(
                     *other_place(key.span, f"the interface declares `{key.name}`"),
-                    *other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+                    *used_here(leaf),
                 ),
                 severity=Severity.WARNING,
                 node=path,
@@ -455,7 +437,7 @@ def _missing_entry(
         help=did_you_mean(guesser(names)(entry)) or f"use one of its entries: {listed(names)}",
         related=(
             *other_place(origins[0].span, f"the value of `{key.name}`"),
-            *other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+            *used_here(leaf),
         ),
         severity=Severity.WARNING,
         node=path,
