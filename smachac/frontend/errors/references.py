@@ -363,15 +363,6 @@ MOST_GIVEN = 3
 """The most params of a call for which repairs are proposed."""
 
 
-def short_value(key: Word) -> str | None:
-    """The value after a key of YAML, if it is one word or number."""
-    found = _SHORT_VALUE.match(key.span.source.text, key.span.end)
-    return found[1] if found is not None else None
-
-
-_SHORT_VALUE = re.compile(r":[ ]+([\w.+-]+)[ ]*(?=[,}\n#]|$)")
-
-
 @problem(
     "SM018",
     "bad-robot",
