@@ -13,6 +13,7 @@ from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors.script import yaml_syntax
+from smachac.frontend.text.yaml_errors import of_spaces
 from smachac.frontend.text.yaml_outline import (
     Row,
     dangling_count,
@@ -252,7 +253,3 @@ def _shown(row: Row) -> str:
     dash = "- " if row.dashes else ""
     text = f"{row.key}:" if row.key and dash else row.key or row.value
     return f"`{dash}{text}`"
-
-
-def of_spaces(number: int) -> str:
-    return f"{number} space{'s' * (number != 1)}"

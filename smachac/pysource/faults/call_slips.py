@@ -14,6 +14,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
 from smachac.pysource.faults.instance_members import Objects
 from smachac.pysource.faults.void_calls import called_function, is_silent
+from smachac.pysource.modules.functions import tried_code
 from smachac.pysource.modules.library_names import MODULES, is_shadowed, module_of_library
 from smachac.pysource.modules.modules import (
     Module,
@@ -24,7 +25,6 @@ from smachac.pysource.modules.modules import (
 )
 from smachac.pysource.modules.syntax_tree import walk_code
 from smachac.pysource.modules.user_code import UserCode
-from smachac.pysource.values.userdata_parts import tried_code
 
 EXTRA_ARGUMENT = FaultKind(
     name="extra argument",

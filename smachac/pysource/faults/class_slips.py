@@ -13,6 +13,7 @@ from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
 from smachac.pysource.faults.class_names import SMACH_CLASSES, STATE_METHODS
+from smachac.pysource.modules.functions import tried_code
 from smachac.pysource.modules.library_names import methods_of_objects
 from smachac.pysource.modules.modules import Module, OwnClass, compared, of_other_objects
 from smachac.pysource.modules.source import PythonText
@@ -139,8 +140,7 @@ def _uncalled(
                 return node.attr in objects.get(owner, ())
         return False
 
-    tried = {inner for node in every if isinstance(node, ast.Try)
-             for line in node.body for inner in walk_code(line)}  # fmt: skip
+    tried = tried_code(every)
     for inner in every:
         if isinstance(inner, ast.If | ast.While | ast.IfExp | ast.Assert):
             for part in operands(inner.test):

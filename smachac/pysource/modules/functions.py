@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from smachac.pysource.modules.syntax_tree import walk_code
 from smachac.records import dataclass
@@ -95,3 +95,9 @@ def _is_wide(handler: ast.ExceptHandler) -> bool:
         return True
     names = {name.id for name in walk_code(handler.type) if isinstance(name, ast.Name)}
     return bool(names & WIDE)
+
+
+def tried_code(every: Iterable[ast.AST]) -> set[ast.AST]:
+    """The code in the body of a `try`."""
+    return {inner for node in every if isinstance(node, ast.Try)
+            for line in node.body for inner in walk_code(line)}  # fmt: skip

@@ -10,10 +10,10 @@ from typing import Literal, TypedDict
 
 from smachac.diagnostics.source import Span, Word
 from smachac.ir.class_facts import Compared, TableLookUp
-from smachac.pysource.modules.functions import access_of
+from smachac.pysource.modules.functions import access_of, tried_code
 from smachac.pysource.modules.modules import Module, OwnClass, of_other_objects
 from smachac.pysource.modules.syntax_tree import walk_code
-from smachac.pysource.values.userdata_parts import TESTS, added_entries, tried_code, written_keys
+from smachac.pysource.values.userdata_parts import TESTS, added_entries, written_keys
 
 PURE = frozenset(["len", "abs", "min", "max", "round", "sum", "int", "float", "bool"])
 """Functions of Python that the types of expressions know (analysis/expression_types.py)."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from smachac.diagnostics.source import Span, Word
 from smachac.ir.class_facts import ClassFault, FaultKind
-from smachac.pysource.modules.functions import alternatives, is_plain, returns_of
+from smachac.pysource.modules.functions import alternatives, is_plain, returns_of, tried_code
 from smachac.pysource.modules.modules import Module, OwnClass, find_function, of_other_objects
 from smachac.pysource.modules.source import PythonText
 from smachac.pysource.modules.syntax_tree import walk_code
@@ -198,8 +198,7 @@ def _loops(own: OwnClass, kept: dict[str, str]) -> Iterator[tuple[str, Word]]:
     for module, node in own.classes:
         others = of_other_objects(node)
         every = [inner for inner in walk_code(node) if inner not in others]
-        tried = {inner for node in every if isinstance(node, ast.Try)
-                 for line in node.body for inner in walk_code(line)}  # fmt: skip
+        tried = tried_code(every)
         tested = any(isinstance(node, ast.Name) and node.id in ("isinstance", "type", "hasattr")
                      for node in every)  # fmt: skip
         for inner in every:

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
 from smachac.ir.class_facts import Part, Step
-from smachac.pysource.modules.functions import is_plain
+from smachac.pysource.modules.functions import is_plain, tried_code
 from smachac.pysource.modules.modules import OwnClass
 from smachac.pysource.modules.source import PythonText
 from smachac.pysource.modules.syntax_tree import walk_code
@@ -62,12 +62,6 @@ def _is_rebound(function: ast.FunctionDef, name: str) -> bool:
              if (isinstance(node, ast.Name) and node.id == name and not _is_read(node))
              or (isinstance(node, ast.arg) and node.arg == name)]  # fmt: skip
     return len(binds) > 1
-
-
-def tried_code(every: Sequence[ast.AST]) -> set[ast.AST]:
-    """The code in the body of a `try`."""
-    return {inner for node in every if isinstance(node, ast.Try)
-            for line in node.body for inner in walk_code(line)}  # fmt: skip
 
 
 def _parts(
