@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from difflib import get_close_matches
 from typing import Any, NamedTuple
 
-from smachac.robots.xml_tree import Element, TextPlace, parse
+from smachac.robots.xml_tree import Element, TextPlace, XmlError, parse
 
 _PREFIX = "xacro:"
 
@@ -66,7 +66,7 @@ class MacroCalls:
     ) -> tuple[str, TextPlace] | None:
         """The file and the place of the innermost call that is found in the texts of files, or of
         its attribute."""
-        trees = [(file, text, parse(text)) for file, text in texts]
+        trees = [(file, text, root) for file, text in texts if (root := _tree(text)) is not None]
         for call in reversed(self._open):
             for file, text, root in trees:
                 for element in _elements(root):
@@ -102,6 +102,14 @@ def _names(macros: Any) -> Iterator[str]:
     while macros is not None:
         yield from macros
         macros = getattr(macros, "parent", None)
+
+
+def _tree(text: str) -> Element | None:
+    """The elements of a text; None for a file of `load_yaml`."""
+    try:
+        return parse(text)
+    except XmlError:
+        return None
 
 
 def _elements(root: Element) -> Iterator[Element]:

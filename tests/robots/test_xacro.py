@@ -147,6 +147,7 @@ def test_mistakes_in_a_call_inside_a_macro(
 ) -> None:
     """The place is the call in the macro around it, in the included file."""
     body = '<xacro:include filename="parts/nested.xacro"/><link name="base"/>'
+    body += """<xacro:property name="limits" value="${xacro.load_yaml('limits.yaml')}"/>"""
     body += '<xacro:outer name="a"/><xacro:inner name="b"><link/></xacro:inner></robot>'
     path = project(
         tmp_path, main=HEAD + body, **{"parts/nested.xacro": HEAD + NESTED.replace("CALL", call)}
