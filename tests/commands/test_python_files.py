@@ -334,6 +334,9 @@ def test_one_machine_is_chosen(run: Run) -> None:
     assert (code, "--machine NAME" in err, "known: sm, top" in err) == (2, True, True)
     code, _, err = run("build", "machine.py", "--target", "dot", "--machine", "tpo")
     assert (code, "did you mean `top`?" in err) == (2, True)
+    write("many.py", TWO + TWO[TWO.index("top =") :] * 30)
+    err = run("build", "many.py", "--target", "dot", "-o", "-")[2]
+    assert "top_19, and 12 more\n" in err
     assert run("build", "states.py", "--target", "dot")[0] == 2
     write("main.yml", "name: sm\ntemplate: Base\noutcomes: [done]\nstates: []\n")
     for command in (["build", "main.yml", "-t", "dot"], ["explain", "main.yml", "x"],
