@@ -588,3 +588,13 @@ def test_watch(folder: Path) -> None:
     finally:
         process.kill()
         process.communicate()
+
+
+def test_a_folder_without_scripts(run: Run) -> None:
+    """The option for Python files is named where it finds some."""
+    code, _, err = run("check", ".")
+    assert (code, "there is no script in `.`" in err, "--python" in err) == (2, True, False)
+    assert "no script and no Python file with a state machine" in run("check", "--python", ".")[2]
+    write("machine.py", MACHINE)
+    code, _, err = run("check", ".")
+    assert (code, "`--python` checks the Python files" in err) == (2, True)
