@@ -105,7 +105,6 @@ def check_command(arguments: Namespace) -> int:
     from smachac.commands.cpu_time import CpuTimeError, limited_time
     from smachac.commands.memory import limited_memory
     from smachac.driver import CODES
-    from smachac.frontend.discovery import NothingFoundError
     from smachac.frontend.files import Disk
 
     arguments.script = arguments.script or [Path()]
@@ -125,21 +124,22 @@ def check_command(arguments: Namespace) -> int:
     except CpuTimeError as error:
         print(error, file=sys.stderr)
         return FINDINGS
-    except NothingFoundError as error:
-        return usage(f"{error}{_python_help(arguments)}")
     except _wrong_usage() as error:
-        return usage(str(error))
+        return usage(_usage_message(error, arguments))
 
 
-def _python_help(arguments: Namespace) -> str:
-    """Help where folders without scripts have machines in Python."""
+def _usage_message(error: Exception, arguments: Namespace) -> str:
+    """The message of an error of usage; it names `--python` where folders without scripts have
+    machines in Python."""
     from smachac.driver.python_machines import files_with_machines
+    from smachac.frontend.discovery import NothingFoundError
     from smachac.frontend.files import Disk
 
-    folders = [path for path in arguments.script if path.is_dir()]
-    if arguments.python or not any(files_with_machines(path, Disk()) for path in folders):
-        return ""
-    return "; `--python` checks the Python files with state machines"
+    if isinstance(error, NothingFoundError) and not arguments.python:
+        folders = (path for path in arguments.script if path.is_dir())
+        if any(files_with_machines(folder, Disk()) for folder in folders):
+            return f"{error}; `--python` checks the Python files with state machines"
+    return str(error)
 
 
 def _wrong_usage() -> tuple[type[Exception], ...]:
@@ -147,8 +147,9 @@ def _wrong_usage() -> tuple[type[Exception], ...]:
     from smachac.checks.robot.workspace import NoSimulationError
     from smachac.commands.git import GitError
     from smachac.diagnostics.baseline import BaselineError
+    from smachac.frontend.discovery import NothingFoundError
 
-    return GitError, BaselineError, NoSimulationError
+    return NothingFoundError, GitError, BaselineError, NoSimulationError
 
 
 def _codes_of(words: list[str]) -> list[str]:
