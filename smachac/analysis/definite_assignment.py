@@ -191,11 +191,7 @@ def _scope(
         if not isinstance(child, Leaf)
     }
     known = _unchanged_leaves(container, children, before) if before is not None else {}
-    for child in reversed(children.values()):
-        if child.name in known:
-            reads[child.name] = known[child.name].reads
-        elif child.inputs or raw:
-            reads[child.name] = _reads(child, scopes.get(child.name), raw)
+    reads |= _reads_of(children, scopes, known, raw=raw)
     steps = _steps(container, children, scopes, known, share, filled=filled)
     order = flow_order(steps)
     reads = {vertex: keys for vertex, keys in reads.items() if keys}
@@ -230,6 +226,22 @@ def _scope(
         uses=KeyUses(path=path, container=container),
         filled=filled,
     )
+
+
+def _reads_of(
+    children: Mapping[str, Node],
+    scopes: Mapping[str, UserdataScope | None],
+    known: Mapping[str, _LeafFlow],
+    *,
+    raw: bool,
+) -> dict[Vertex, tuple[str, ...]]:
+    """The keys of its container that each child needs at its entry, by name, the last child
+    first."""
+    return {
+        name: known[name].reads if name in known else _reads(child, scopes.get(name), raw)
+        for name, child in reversed([*children.items()])
+        if name in known or child.inputs or raw
+    }
 
 
 class _LeafFlow(NamedTuple):
