@@ -275,7 +275,7 @@ class Context:
     def _filled_loops(self) -> frozenset[str]:
         from smachac.analysis.filled_lists import filled_loops
 
-        return filled_loops(self.containers, self.accesses)
+        return filled_loops(self.containers, lambda: self.accesses)
 
     @cached_property
     def flow(self) -> DataFlow:
@@ -334,7 +334,7 @@ class Context:
         """The resources that each state holds while it runs."""
         from smachac.analysis.resource_claims import claims
 
-        return claims(self.states, self.containers, self.accesses)
+        return claims(self.states, self.containers, lambda: self.accesses)
 
     @cached_property
     def endless(self) -> frozenset[str]:

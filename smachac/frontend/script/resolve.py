@@ -28,6 +28,7 @@ from smachac.frontend.messages.message_definitions import (
     definitions_of,
     missing_definitions_of,
     other_types_of,
+    with_values,
 )
 from smachac.frontend.resolved_script import TIMER, Script, State, Sugar, no_states, unknown_state
 from smachac.frontend.schema import FieldOwner
@@ -252,14 +253,15 @@ class _Resolver:
         known = [type_ for type_ in self.types.values() if type_ is not None]
         classes = [type_.class_facts for type_ in known if type_.class_facts is not None]
         library = replace(self.library, definition_names=cache(self.library.definition_names))
-        definitions = definitions_of(base, classes, library, self.report)
+        states = with_values(base)
+        definitions = definitions_of(base, states, classes, library, self.report)
         return Script(
             base=base,
             sources=tuple(self.sources),
             robot=robot,
             definitions=definitions,
-            missing_definitions=missing_definitions_of(base, classes, definitions, library),
-            other_types=other_types_of(base, definitions, library),
+            missing_definitions=missing_definitions_of(states, classes, definitions, library),
+            other_types=other_types_of(states, definitions, library),
             unused=self.uses.unused(self.report),
             properties=self._properties(entries.get("properties"), source),
             params=params_of(entries.get("params")),
