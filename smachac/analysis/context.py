@@ -18,7 +18,7 @@ from smachac.analysis.control_flow import (
 from smachac.analysis.incremental_facts import Fact, IncrementalResult, Preorder, found_at
 from smachac.ir import nodes, traversal
 from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine, StateType
-from smachac.pysource.user_code import CodeFacts, ProjectCode
+from smachac.pysource.modules.user_code import CodeFacts, ProjectCode
 
 if TYPE_CHECKING:
     from smachac.analysis.accesses import Accesses
@@ -275,7 +275,7 @@ class Context:
     def _filled_loops(self) -> frozenset[str]:
         from smachac.analysis.filled_lists import filled_loops
 
-        return filled_loops(self.containers, self.accesses)
+        return filled_loops(self.containers, lambda: self.accesses)
 
     @cached_property
     def flow(self) -> DataFlow:
@@ -334,7 +334,7 @@ class Context:
         """The resources that each state holds while it runs."""
         from smachac.analysis.resource_claims import claims
 
-        return claims(self.states, self.containers, self.accesses)
+        return claims(self.states, self.containers, lambda: self.accesses)
 
     @cached_property
     def endless(self) -> frozenset[str]:

@@ -45,11 +45,11 @@ def dangling_transitions(
 ) -> list[Transition]:
     """The transitions of children that lead neither to one of `names` nor out by one of `exits`."""
     return [
-        step for child in children for step in child.transitions if _is_stray(step, names, exits)
+        step for child in children for step in child.transitions if _is_dangling(step, names, exits)
     ]
 
 
-def _is_stray(step: Transition, names: frozenset[str], exits: frozenset[str]) -> bool:
+def _is_dangling(step: Transition, names: frozenset[str], exits: frozenset[str]) -> bool:
     # `leads_to_child` in place: the check of every transition comes here
     return step.target not in exits and (step.target not in names or step.origin == "implicit")
 

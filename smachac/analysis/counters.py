@@ -145,18 +145,18 @@ def _test(known: _Constants, scope: UserdataScope, leaf: Node, key: str) -> Test
             body = script_code(conditions[outcome].text).function
             match body:
                 case (ast.Compare(left=left, ops=[op], comparators=[right]), names):
-                    turned = _field(right, names) == own
-                    value, other = (right, left) if turned else (left, right)
+                    inverted = _field(right, names) == own
+                    value, other = (right, left) if inverted else (left, right)
                     limit = known.number(scope, leaf, other, names)
                     if _field(value, names) != own or limit is None or type(op) not in _COMPARED:
                         return None
-                    compared.append((outcome, _COMPARED[type(op)], limit, turned))
+                    compared.append((outcome, _COMPARED[type(op)], limit, inverted))
                 case _:
                     return None
 
     def decide(value: Number) -> str:
-        for outcome, holds, limit, turned in compared:
-            if holds(limit, value) if turned else holds(value, limit):
+        for outcome, holds, limit, inverted in compared:
+            if holds(limit, value) if inverted else holds(value, limit):
                 return outcome
         return default
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
-from typing import Protocol, TypeVar, cast
+from typing import NamedTuple, Protocol, TypeVar, cast
 
 from smachac.analysis.accesses import (
     ANYTHING,
@@ -124,7 +124,7 @@ def data_flow(
         same = scope is not None and scope.filled is (path in filled)
         if scope is None or not same or not _is_unchanged(scope, container, found, known):
             filled_here = path in filled
-            scope = _scope(path, container, found, machine.root, shared, filled=filled_here)
+            scope = _scope(path, container, found, machine.root, shared, scope, filled=filled_here)
         found[path] = scope
     entered = {machine.root.name}
     repeated: set[str] = set()
@@ -162,12 +162,13 @@ def _scope(
     inner: Mapping[str, UserdataScope],
     root: Container,
     shared: dict[object, object],
+    before: UserdataScope | None,
     *,
     filled: bool,
 ) -> UserdataScope:
     """The scope of a container; `inner` are those of the containers inside. `filled`: it is an
     iterator that surely has items. `shared` are the sets of keys in other scopes: a machine has few
-    different ones."""
+    different ones. `before` is the scope of the container before a change."""
 
     def share(value: T) -> T:
         return cast(T, shared.setdefault(value, value))
@@ -189,10 +190,9 @@ def _scope(
         for name, child in children.items()
         if not isinstance(child, Leaf)
     }
-    for child in reversed(children.values()):
-        if child.inputs or raw:
-            reads[child.name] = _reads(child, scopes.get(child.name), raw)
-    steps = _steps(container, children, scopes, share, filled=filled)
+    known = _unchanged_leaves(container, children, before) if before is not None else {}
+    reads |= _reads_of(children, scopes, known, raw=raw)
+    steps = _steps(container, children, scopes, known, share, filled=filled)
     order = flow_order(steps)
     reads = {vertex: keys for vertex, keys in reads.items() if keys}
     queried: dict[Vertex, list[str]] = {
@@ -226,6 +226,48 @@ def _scope(
         uses=KeyUses(path=path, container=container),
         filled=filled,
     )
+
+
+def _reads_of(
+    children: Mapping[str, Node],
+    scopes: Mapping[str, UserdataScope | None],
+    known: Mapping[str, _LeafFlow],
+    *,
+    raw: bool,
+) -> dict[Vertex, tuple[str, ...]]:
+    """The keys of its container that each child needs at its entry, by name, the last child
+    first."""
+    return {
+        name: known[name].reads if name in known else _reads(child, scopes.get(name), raw)
+        for name, child in reversed([*children.items()])
+        if name in known or child.inputs or raw
+    }
+
+
+class _LeafFlow(NamedTuple):
+    """The keys that a leaf needs, and the steps from it."""
+
+    reads: tuple[str, ...]
+    steps: tuple[KeyStep, ...]
+
+
+def _unchanged_leaves(
+    container: Container, children: Mapping[str, Node], before: UserdataScope
+) -> Mapping[str, _LeafFlow]:
+    """The leaves of a container that are the same objects as before a change, by name. Their flow
+    is the same if the container leads to the same names."""
+    if (
+        not isinstance(container, nodes.StateMachine | nodes.Sequence)
+        or children.keys() != before.children.keys()
+        or len(container.children) > len(children)
+        or outcome_names(container) != outcome_names(before.container)
+    ):
+        return {}
+    return {
+        name: _LeafFlow(before.reads.get(name, ()), before.steps.get(name, ()))
+        for name, child in children.items()
+        if child is before.children[name] and isinstance(child, Leaf)
+    }
 
 
 def _endings(
@@ -305,13 +347,14 @@ def _steps(
     container: Container,
     children: Mapping[str, Node],
     scopes: Mapping[str, UserdataScope | None],
+    known: Mapping[str, _LeafFlow],
     share: Callable[[Writes], Writes],
     *,
     filled: bool,
 ) -> KeySteps:
     """The steps of a container; those of a concurrence lead from its start to each child and to
-    each of its outcomes. `scopes`: those of the containers inside. One that is `filled` has no step
-    from its start past its child."""
+    each of its outcomes. `scopes`: those of the containers inside, `known`: see
+    `_unchanged_leaves`. One that is `filled` has no step from its start past its child."""
     raw = isinstance(container, nodes.Iterator)
 
     def writes(name: str, outcome: str) -> Writes | None:
@@ -335,8 +378,10 @@ def _steps(
             }
             if container.initial in children:
                 found[START].append(KeyStep(container.initial, "", NOTHING))
-            for child, leads in transitions(container):
+            for child, leads in transitions(container, known):
                 name = child.name
+                if name in known and known[name].steps:
+                    found[name] += known[name].steps
                 for target, step in leads:
                     given = writes(name, step.outcome) if name in writers else NOTHING
                     if given is not None:

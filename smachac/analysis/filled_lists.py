@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from smachac.analysis.accesses import Accesses, inside
 from smachac.ir import nodes
@@ -28,19 +28,20 @@ EMPTYING = frozenset(["clear", "pop", "remove"])
 
 
 def filled_loops(
-    containers: Sequence[tuple[str, Container]], known: Mapping[str, Accesses]
+    containers: Sequence[tuple[str, Container]], accesses: Callable[[], Mapping[str, Accesses]]
 ) -> frozenset[str]:
     """The paths of the iterators that surely run at least once: their items are a key whose value
     is a preset list with items, and no state writes the key or can change the list.
 
-    `known` are the accesses of every state, `containers` have parents before children.
+    `accesses` returns those of every state, which few machines need; `containers` have parents
+    before children.
     """
     loops = [container for container in containers if isinstance(container[1], nodes.Iterator)]
     if not any(
         isinstance(container, nodes.Iterator) and container.items_key for _, container in loops
     ):
         return frozenset()
-    lists = _lists(containers, known)
+    lists = _lists(containers, accesses())
     if not any(lists.values()):
         return frozenset()
     changed = {origin for path, node in containers for origin in _changed(node, lists[path])}

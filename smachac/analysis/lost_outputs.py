@@ -53,8 +53,8 @@ def _lost(flow: DataFlow, lost_keys: Iterable[Missing], fact_of: FactOf) -> Iter
         outer = around(flow, scope.path)
         if outer is None or scope.path not in flow.entered or scope.container.sugar:
             continue
-        kept: tuple[_Kept, ...] = fact_of(_kept, scope.path, scope)
-        for written, is_named in kept:
+        inner: tuple[_InnerWrite, ...] = fact_of(_inner_writes, scope.path, scope)
+        for written, is_named in inner:
             own, writer = written.outer, written.node
             if left <= 0 or (scope.path, own) in reported:
                 continue
@@ -78,7 +78,7 @@ def _lost(flow: DataFlow, lost_keys: Iterable[Missing], fact_of: FactOf) -> Iter
                 break
 
 
-class _Kept(NamedTuple):
+class _InnerWrite(NamedTuple):
     """A key that a state of a container writes and that is no output of the container. `is_named`:
     the script lists or renames it; if not, it is an input of the container, or the state is one,
     and only the interface of the state type lists it."""
@@ -243,24 +243,24 @@ def _read(scope: UserdataScope) -> frozenset[str]:
     return frozenset(chain(*scope.reads.values()))
 
 
-def _kept(scope: UserdataScope) -> tuple[_Kept, ...]:
+def _inner_writes(scope: UserdataScope) -> tuple[_InnerWrite, ...]:
     """The keys that states of a container write and that are no outputs of it. A key that is also
     read in the container counts only if it is an input, because then it has one name outside."""
     read = {use.outer for use in scope.uses.all if use.reads and use.node is not scope.container}
-    found: list[_Kept] = []
+    found: list[_InnerWrite] = []
     for use in scope.uses.all:
         own, child, key = use.outer, use.node, use.declared
         if not use.writes or own in scope.outputs or (own in read and own not in scope.inputs):
             continue
         if not _is_leaf(child):
             if _is_set_in(child, use.key):
-                found.append(_Kept(use, False))
+                found.append(_InnerWrite(use, False))
             continue
         is_named = key is not None and key.span.source is child.span.source
         if not is_named and all(input_.name != use.key for input_ in child.inputs):
             is_named = any(remap.key == use.key for remap in child.remaps)
         if is_named or own in scope.inputs:
-            found.append(_Kept(use, is_named))
+            found.append(_InnerWrite(use, is_named))
     return tuple(found)
 
 

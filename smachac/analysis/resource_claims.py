@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from smachac.analysis.accesses import Accesses, inside
 from smachac.ir.nodes import Container, Data, Leaf, Node
@@ -28,11 +28,12 @@ def prefixes(claim: str) -> Iterator[str]:
 def claims(
     states: Iterable[tuple[str, Node]],
     containers: Sequence[tuple[str, Container]],
-    known: Mapping[str, Accesses],
+    accesses: Callable[[], Mapping[str, Accesses]],
 ) -> Held:
     """The claims of every state. A claim with an unknown key keeps the key in braces: two such
-    claims can be of different resources."""
-    values = _constants(containers, known) if _have_keys(states) else {}
+    claims can be of different resources. `accesses` returns those of every state, which few
+    machines need."""
+    values = _constants(containers, accesses()) if _have_keys(states) else {}
     found: Held = {path: {} for path, _ in containers[:1]}
     for path, container in containers:
         keys = values.get(path, {})

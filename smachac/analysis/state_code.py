@@ -17,10 +17,8 @@ from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind, Parameter
 from smachac.ir.nodes import Leaf, Machine, StateMachine, StateType
 from smachac.ir.traversal import inputs_from, outer_outputs, remapping, walk
-from smachac.pysource.import_cycles import circular_imports
-from smachac.pysource.smacha_templates import call_faults, guard_faults
-from smachac.pysource.template_bodies import body_faults, template_bodies
-from smachac.pysource.user_code import (
+from smachac.pysource.modules.import_cycles import circular_imports
+from smachac.pysource.modules.user_code import (
     CodeFacts,
     Declared,
     ProjectCode,
@@ -31,6 +29,8 @@ from smachac.pysource.user_code import (
     languages,
     user_types,
 )
+from smachac.pysource.templates.smacha_templates import call_faults, guard_faults
+from smachac.pysource.templates.template_bodies import body_faults, template_bodies
 from smachac.records import replace
 
 NO_SUCH_PARAMETER = FaultKind(

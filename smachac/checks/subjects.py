@@ -80,7 +80,7 @@ def properties(context: Context) -> bool:
 
 def user_code(context: Context) -> bool:
     """Classes and templates of the user."""
-    from smachac.pysource.template_sources import uses_own_templates
+    from smachac.pysource.templates.template_sources import uses_own_templates
 
     project = context.project
     if classes(context):

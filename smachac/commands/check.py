@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from smachac.driver import IncrementalState, MachineCheck
     from smachac.driver.batch import Batch
     from smachac.frontend.files import Disk
-    from smachac.pysource.coverage import Coverage
+    from smachac.pysource.machines.coverage import Coverage
     from smachac.refactor.autofix import FixResult
 
 EXAMPLES = """\
@@ -125,7 +125,21 @@ def check_command(arguments: Namespace) -> int:
         print(error, file=sys.stderr)
         return FINDINGS
     except _wrong_usage() as error:
-        return usage(str(error))
+        return usage(_usage_message(error, arguments))
+
+
+def _usage_message(error: Exception, arguments: Namespace) -> str:
+    """The message of an error of usage; it names `--python` where folders without scripts have
+    machines in Python."""
+    from smachac.driver.python_machines import files_with_machines
+    from smachac.frontend.discovery import NothingFoundError
+    from smachac.frontend.files import Disk
+
+    if isinstance(error, NothingFoundError) and not arguments.python:
+        folders = (path for path in arguments.script if path.is_dir())
+        if any(files_with_machines(folder, Disk()) for folder in folders):
+            return f"{error}; `--python` checks the Python files with state machines"
+    return str(error)
 
 
 def _wrong_usage() -> tuple[type[Exception], ...]:

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 OK, FINDINGS, USAGE = 0, 1, 2
 """Exit codes: success; findings or failure; wrong usage."""
 
+MOST_NAMES = 20
+"""The most known names that an error of usage lists."""
+
 
 def without_notes(report: Report) -> Report:
     """The findings that reports for people show: errors and warnings."""
@@ -51,13 +54,15 @@ def shown(path: object) -> str:
 
 def usage(message: str, word: str = "", known: Sequence[str] = ()) -> int:
     """Print an error of usage as argparse does, with the known name that is nearest to `word`, or
-    all of them; the exit code."""
+    the first ones; the exit code."""
     from smachac.diagnostics.diagnostic import did_you_mean
     from smachac.report.terminal import visible
 
     print(f"smachac: error: {visible(message)}", file=sys.stderr)
     if known:
-        print(did_you_mean(word, known) or f"known: {', '.join(known)}", file=sys.stderr)
+        more = f", and {len(known) - MOST_NAMES} more" if len(known) > MOST_NAMES else ""
+        names = ", ".join(known[:MOST_NAMES])
+        print(did_you_mean(word, known) or f"known: {names}{more}", file=sys.stderr)
     return USAGE
 
 

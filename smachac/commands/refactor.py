@@ -244,8 +244,8 @@ def contain_command(arguments: Namespace) -> int:
 
 def edit_command(arguments: Namespace) -> int:
     """Change a transition, add or remove a state; the exit code."""
-    from smachac.refactor.edit import BadEditError, Edit, EditResult
-    from smachac.refactor.edit import perform as perform_edit
+    from smachac.view.graphical_edit import BadEditError, Edit, EditResult
+    from smachac.view.graphical_edit import perform as perform_edit
 
     form, names, least = EDITS[arguments.operation]
     words = arguments.words

@@ -6,10 +6,10 @@ import re
 from collections.abc import Mapping, Sequence
 from keyword import iskeyword
 
-from smachac.checks.type_words import named
+from smachac.checks.findings.type_words import named
 from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.frontend.loader import Library
-from smachac.frontend.types.type_names import Aliases, filled
+from smachac.frontend.text.type_names import Aliases, filled
 from smachac.ir.nodes import StateType
 from smachac.ir.types import WORDS, Type, parse_type, unknown_words
 from smachac.records import dataclass

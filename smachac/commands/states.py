@@ -65,7 +65,7 @@ def _known_types(templates: list[Path]) -> list[Known]:
 
     from smachac.frontend.files import disk_library
     from smachac.frontend.schema import CONTAINERS
-    from smachac.pysource.user_code import languages
+    from smachac.pysource.modules.user_code import languages
     from smachac.report.state_types import Known, container_type, usable_types
     from smachac.targets import load_target, target_names
 

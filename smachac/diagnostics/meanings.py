@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
+
+from smachac.diagnostics.negation import words_in
 
 MEANINGS = (
     frozenset(
@@ -70,17 +71,15 @@ GENERAL = frozenset(["cb", "data", "key", "keys", "list", "name", "state", "type
 SHORTEST_STEM = 4
 """A longer word that begins with a shorter one than this need not be of its meaning."""
 
-_WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
-
 
 def by_words(word: str, names: Sequence[str]) -> str | None:
     """The only name that has most words of the meaning of the words of another name, and the fewest
     others: `percentage` for `charge_percent`. The last word of a name counts most. None without
     one."""
-    wanted = _words(word)
+    wanted = words_in(word)
     found: dict[tuple[bool, int, int], list[str]] = {}
     for name in names:
-        own = _words(name)
+        own = words_in(name)
         alike = [
             text not in GENERAL and any(_are_alike(text, other) for other in own) for text in wanted
         ]
@@ -88,7 +87,7 @@ def by_words(word: str, names: Sequence[str]) -> str | None:
             rank = (alike[-1], sum(alike), -len(own))
             found.setdefault(rank, []).append(name)
     best = found[max(found)] if found else []
-    if len(best) != 1 or best[0] == word or _differ(wanted, _words(best[0])):
+    if len(best) != 1 or best[0] == word or _differ(wanted, words_in(best[0])):
         return None
     return best[0]
 
@@ -102,10 +101,6 @@ def _differ(words: Sequence[str], others: Sequence[str]) -> bool:
 
 def _has_known(words: Sequence[str]) -> bool:
     return any(word in group for word in words for group in (*MEANINGS, *QUANTITIES))
-
-
-def _words(name: str) -> list[str]:
-    return [word.lower() for word in _WORDS.findall(name)]
 
 
 def _are_alike(one: str, other: str) -> bool:

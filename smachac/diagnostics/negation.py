@@ -43,17 +43,18 @@ def are_opposite(one: str, other: str) -> bool:
     """Whether one of two names is the negation of the other."""
     if one.casefold().replace("_", "") == other.casefold().replace("_", ""):
         return False
-    first, second = _words(one), _words(other)
+    first, second = words_in(one), words_in(other)
     return _negated(first, second) != _negated(second, first)
 
 
 def is_negation(one: str, other: str) -> bool:
     """Whether one of two names negates the other and has a word of it: `not_found` and `found`, but
     not `not_found` and `empty`."""
-    return are_opposite(one, other) and not {*_words(one)}.isdisjoint(_words(other))
+    return are_opposite(one, other) and not {*words_in(one)}.isdisjoint(words_in(other))
 
 
-def _words(name: str) -> list[str]:
+def words_in(name: str) -> list[str]:
+    """The words of a name in lower case, without digits."""
     return [word.lower() for word in _WORDS.findall(name)]
 
 

@@ -35,14 +35,14 @@ from smachac.frontend.script.resolve_cache import ResolveCache
 from smachac.frontend.text.suppressions import Suppression, suppress
 from smachac.ir.nodes import Checked, Machine, StateType
 from smachac.ir.recursion import deep_recursion
-from smachac.pysource.ros_names import ROS_VERSIONS
-from smachac.pysource.user_code import Declared, ProjectCode
+from smachac.pysource.modules.ros_names import ROS_VERSIONS
+from smachac.pysource.modules.user_code import Declared, ProjectCode
 from smachac.records import dataclass, field, replace
 from smachac.targets import BuildContext, Files, Target, load_target
 
 TYPE_CHECKING = False  # annotations only: a check of scripts reads no machines in Python
 if TYPE_CHECKING:
-    from smachac.pysource.coverage import Coverage
+    from smachac.pysource.machines.coverage import Coverage
 
 Folders: TypeAlias = "Sequence[str | PathLike[str]]"
 
@@ -273,7 +273,7 @@ def version_faults(machine: Machine, library: Library) -> Report:
 def template_faults(machine: Machine, library: Library) -> Report:
     """The findings in templates of the user, which are rendered as for the Python program. Code for
     the other version of ROS is a warning, see `version_faults`."""
-    from smachac.pysource.template_sources import uses_own_templates
+    from smachac.pysource.templates.template_sources import uses_own_templates
     from smachac.targets.python import TARGET
     from smachac.targets.python.missing_templates import missing_templates
     from smachac.targets.python.ros import needs_other_version

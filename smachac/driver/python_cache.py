@@ -26,7 +26,7 @@ from smachac.diagnostics.diagnostic import (
 from smachac.diagnostics.source import Source, Span
 from smachac.driver import CODES
 from smachac.frontend.files import PACKAGE
-from smachac.pysource.coverage import Coverage, UnknownPlace
+from smachac.pysource.machines.coverage import Coverage, UnknownPlace
 from smachac.records import dataclass, replace
 from smachac.version import __version__
 

@@ -23,9 +23,9 @@ from smachac.frontend.text.suppressions import MARK, suppress
 from smachac.ir.nodes import Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import walk
-from smachac.pysource.coverage import Coverage, coverage_of, unknown_states
 from smachac.pysource.machines.class_facts import ClassReader
 from smachac.pysource.machines.constructions import Constructions, constructions
+from smachac.pysource.machines.coverage import Coverage, coverage_of, unknown_states
 from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import Evaluator
 from smachac.pysource.machines.graph import Graph, graphs
@@ -33,8 +33,13 @@ from smachac.pysource.machines.libraries import FRAMEWORKS
 from smachac.pysource.machines.project import Repository, module_text
 from smachac.pysource.machines.roots import Roots, machines_of, variants_of
 from smachac.pysource.machines.values import UseFault
-from smachac.pysource.python2 import INSTALL, is_installed, looks_like_python2, python2_error
-from smachac.pysource.source import (
+from smachac.pysource.modules.python2 import (
+    INSTALL,
+    is_installed,
+    looks_like_python2,
+    python2_error,
+)
+from smachac.pysource.modules.source import (
     LONGEST,
     PythonText,
     is_readable,

@@ -13,9 +13,9 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.script import too_big, unreadable_file
-from smachac.frontend.types.type_names import Aliases, filled, record_text
+from smachac.frontend.text.type_names import Aliases, filled, record_text
 from smachac.ir.types import MOST_BOUND, WORDS, Bounds, CppClass, parse_type, unknown_words
-from smachac.pysource.ros_names import DEFAULT_ROS, ROS_VERSIONS, Ros
+from smachac.pysource.modules.ros_names import DEFAULT_ROS, ROS_VERSIONS, Ros
 from smachac.records import dataclass, field
 
 SETTINGS: Mapping[str, str] = {

@@ -65,8 +65,9 @@ def scripts_of(
             for path in paths:
                 _refuse_link(path, folder, disk)
         if not paths:
+            more = " and no Python file with a state machine" if python is not None else ""
             help = "; `smachac new my_robot` creates a project" if argument == Path() else ""
-            raise NothingFoundError(f"there is no script in `{argument}`{help}")
+            raise NothingFoundError(f"there is no script{more} in `{argument}`{help}")
         for path in paths:
             found.setdefault(os.path.realpath(path), path)
     return list(found.values())

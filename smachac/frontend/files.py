@@ -30,7 +30,7 @@ from smachac.frontend.errors.script import too_big, unreadable_file
 from smachac.frontend.loader import ROBOT_FILES, SUFFIXES, Library
 from smachac.frontend.text.recovering_parser import parse_with_recovery
 from smachac.frontend.text.yaml_tree import Tree
-from smachac.pysource.ros_names import Ros
+from smachac.pysource.modules.ros_names import Ros
 from smachac.records import replace
 from smachac.robots.encodings import EncodingError, decoded
 

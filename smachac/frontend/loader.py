@@ -10,10 +10,10 @@ from smachac.diagnostics.diagnostic import (
 )
 from smachac.diagnostics.severities import Policy
 from smachac.diagnostics.source import Source
+from smachac.frontend.text.type_names import Aliases
 from smachac.frontend.text.yaml_tree import Tree, parse
-from smachac.frontend.types.type_names import Aliases
 from smachac.ir.types import Bounds, CppClass
-from smachac.pysource.user_code import UserCode
+from smachac.pysource.modules.user_code import UserCode
 from smachac.records import dataclass, field
 
 TYPE_CHECKING = False  # annotations only: few scripts have a robot file

@@ -243,6 +243,12 @@ def names_for(owner: str) -> list[str]:
     return [row.name for row in VARIABLES.values() if owner in row.owners]
 
 
+def special_owners(name: str) -> frozenset[str]:
+    """The owners of a field that an ordinary state does not have; empty for any other name."""
+    row = VARIABLES.get(name)
+    return frozenset() if row is None or "state" in row.owners else row.owners
+
+
 OWN_FIELDS: Mapping[str, frozenset[str]] = {
     owner: frozenset(names_for(owner)) for owner in {owner for row in VARIABLES.values()
                                                      for owner in row.owners}

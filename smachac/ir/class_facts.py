@@ -102,7 +102,7 @@ class Ending:
     None: not known. `possible`: an entry of a table, which may be one that is never used, or a path
     that may be impossible. `meant` is the expression that was probably meant; `silent` the helper
     that ends without `return`, and so returns None. `skipped` are the keys that a path to it does
-    not set, each with the place that leads past the assignment (pysource/skipped_writes.py).
+    not set, each with the place that leads past the assignment (pysource/flow/skipped_writes.py).
     `defined` is the place of the text of a constant that has a name in the code."""
 
     outcome: Word

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
@@ -115,15 +115,15 @@ def _transition_edges(container: nodes.StateMachine | nodes.Sequence) -> Iterato
 
 
 def transitions(
-    container: nodes.StateMachine | nodes.Sequence,
+    container: nodes.StateMachine | nodes.Sequence, known: Collection[str] = ()
 ) -> Iterator[tuple[Node, list[tuple[Vertex, Transition]]]]:
     """The transitions of each state of a container that can be taken, with the vertices that they
-    lead to."""
+    lead to; none of the states whose names are in `known`."""
     names = frozenset([child.name for child in container.children])
     exits = {outcome.name: exit_vertex(outcome.name) for outcome in container.outcomes}
     for child in container.children:
         steps: list[tuple[Vertex, Transition]] = []
-        for step in _live_transitions(child):
+        for step in () if child.name in known else _live_transitions(child):
             if step.target in names and step.origin != "implicit":  # `leads_to_child`
                 steps.append((step.target, step))
             elif step.target in exits:

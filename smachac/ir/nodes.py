@@ -468,8 +468,7 @@ class StateType:
     `prints_itself`: the Python template adds the state to its container, as SMACHA's templates do.
     A state has an outcome of `optional` only if its container or one of its transitions names it.
     `needs` are the variables of an outcome, by outcome: without a value of one of them a state
-    never ends with it. `outcomes_place` is the place of its outcomes in its interface, or of the
-    first field there.
+    never ends with it.
     `used` are the words in the template of a type that accepts any variable; None: not known.
     `default_keys` are the keys of a state for which the script lists none, by `input_keys` and
     `output_keys`.
@@ -493,7 +492,6 @@ class StateType:
     output_keys: tuple[Key, ...] = ()
     outcomes: tuple[Outcome, ...] = ()
     needs: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    outcomes_place: Span | None = field(default=None, compare=False, repr=False)
     writes: tuple[tuple[str, tuple[str, ...]], ...] = ()
     given: frozenset[str] = frozenset()
     claims: tuple[str, ...] = ()

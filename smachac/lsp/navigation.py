@@ -12,7 +12,7 @@ from smachac.ir.nodes import NATIVE, Machine, StateType
 from smachac.ir.script_paths import ScriptPath, walk_script
 from smachac.lsp.facts import Facts
 from smachac.lsp.place import FIELD, ITEM, KEY, STATE, VALUE, Body, Place
-from smachac.pysource.modules import load_module
+from smachac.pysource.modules.modules import load_module
 from smachac.records import dataclass
 from smachac.refactor.cst import UnsupportedYamlError
 from smachac.refactor.editor import RefusedError, ScriptEditor

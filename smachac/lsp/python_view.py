@@ -27,7 +27,7 @@ from smachac.ir.traversal import walk
 from smachac.lsp.symbols import Symbol
 from smachac.pysource.machines.graph import Graph
 from smachac.pysource.machines.values import Class
-from smachac.pysource.source import name_span, python_text
+from smachac.pysource.modules.source import name_span, python_text
 from smachac.report.explain_state import explain_state, state_text
 from smachac.report.outline import paragraphs
 

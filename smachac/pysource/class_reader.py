@@ -13,11 +13,10 @@ from collections.abc import Iterator
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import STATE_PARAMETERS, ClassFacts, ClassFault, FaultKind, Parameter
-from smachac.pysource.base_calls import arguments_to_base, base_call_faults, copied
-from smachac.pysource.call_slips import call_slips
-from smachac.pysource.class_members import missing_constants
-from smachac.pysource.class_messages import class_messages
-from smachac.pysource.class_names import (
+from smachac.pysource.faults.base_calls import arguments_to_base, base_call_faults, copied
+from smachac.pysource.faults.call_slips import call_slips
+from smachac.pysource.faults.class_members import missing_constants
+from smachac.pysource.faults.class_names import (
     OTHER_USERDATA,
     STATE_METHODS,
     UNDEFINED_NAME,
@@ -25,8 +24,7 @@ from smachac.pysource.class_names import (
     undefined_methods,
     undefined_names,
 )
-from smachac.pysource.class_operations import compared_texts, operation_facts, table_look_ups
-from smachac.pysource.class_slips import (
+from smachac.pysource.faults.class_slips import (
     is_uncalled_super,
     joined_texts,
     missing_comma,
@@ -34,23 +32,17 @@ from smachac.pysource.class_slips import (
     unknown_argument,
     wrong_base,
 )
-from smachac.pysource.class_values import (
-    kept_parameters,
-    loops,
-    lost_results,
-    texts_as_lists,
-    written_values,
-)
-from smachac.pysource.flow import Flow, Flows
-from smachac.pysource.functions import is_generator, is_plain
-from smachac.pysource.imports import missing_imports
-from smachac.pysource.instance_members import missing_members, uncalled_members
-from smachac.pysource.library_names import missing_attributes
-from smachac.pysource.life_cycle import EXECUTE_ONLY, LifeCycle, in_cycle
-from smachac.pysource.local_values import local_values, text_of, unused_values
-from smachac.pysource.lost_outcomes import lost_outcomes
-from smachac.pysource.module_members import module_slips
-from smachac.pysource.modules import (
+from smachac.pysource.faults.instance_members import missing_members, uncalled_members
+from smachac.pysource.faults.module_members import module_slips
+from smachac.pysource.faults.void_calls import void_calls
+from smachac.pysource.flow.flow import Flow, Flows
+from smachac.pysource.flow.life_cycle import EXECUTE_ONLY, LifeCycle, in_cycle
+from smachac.pysource.flow.local_values import local_values, text_of, unused_values
+from smachac.pysource.flow.lost_outcomes import lost_outcomes
+from smachac.pysource.modules.functions import is_generator, is_plain
+from smachac.pysource.modules.imports import missing_imports
+from smachac.pysource.modules.library_names import missing_attributes
+from smachac.pysource.modules.modules import (
     CLASS_ELSEWHERE,
     SYNTAX,
     Module,
@@ -64,12 +56,20 @@ from smachac.pysource.modules import (
     template_module,
     with_bases,
 )
-from smachac.pysource.other_modules import module_with
-from smachac.pysource.source import PythonText, name_span
-from smachac.pysource.syntax_tree import walk_code
-from smachac.pysource.user_code import UserCode
-from smachac.pysource.userdata_parts import parts_of_arguments, parts_read
-from smachac.pysource.void_calls import void_calls
+from smachac.pysource.modules.other_modules import module_with
+from smachac.pysource.modules.source import PythonText, name_span
+from smachac.pysource.modules.syntax_tree import walk_code
+from smachac.pysource.modules.user_code import UserCode
+from smachac.pysource.values.class_messages import class_messages
+from smachac.pysource.values.class_operations import compared_texts, operation_facts, table_look_ups
+from smachac.pysource.values.class_values import (
+    kept_parameters,
+    loops,
+    lost_results,
+    texts_as_lists,
+    written_values,
+)
+from smachac.pysource.values.userdata_parts import parts_of_arguments, parts_read
 from smachac.records import replace
 
 NO_STATE = FaultKind(

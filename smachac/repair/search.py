@@ -20,11 +20,13 @@ from smachac.diagnostics.clusters import Cluster
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, identity
 from smachac.diagnostics.repair import Certainty, Repair, edited_texts
 from smachac.diagnostics.source import Source
-from smachac.driver import Analysis, MachineCheck, analyse
+from smachac.driver import Analysis, IncrementalState, MachineCheck, analyse
 from smachac.driver.batch import Batch, analyse_alone
 from smachac.frontend.config import PROJECT_FILES
 from smachac.frontend.loader import Library
+from smachac.frontend.text.pieces import PieceTrees
 from smachac.frontend.text.recovering_parser import parse_with_recovery
+from smachac.frontend.text.yaml_tree import Tree
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
 from smachac.records import replace
@@ -102,25 +104,33 @@ def _is_tried(item: Diagnostic) -> bool:
 
 
 def again(analysis: Analysis, extra: MachineCheck | None = None) -> Again:
-    """The function that analyses the script of an analysis after changes of its texts."""
+    """The function that analyses the script of an analysis after changes of its texts. An analysis
+    uses what did not change since the one before, whose places move: it ends where the next one
+    begins."""
     source, library = analysis.source, analysis.library
+    previous, pieces = IncrementalState(), PieceTrees()
 
     def analysed(texts: Mapping[Source, str]) -> Analysis:
         assert source is not None
         assert library is not None
         changed = {old.name: Source(old.name, text) for old, text in texts.items()}
-        own = _with_texts(library, changed)
+        own = _with_texts(library, changed, pieces)
         new = changed.get(source.name, source)
         if analysis.alone:
             return analyse_alone(new, own, [])
-        return analyse(new, own, [], extra, render=True)
+        return analyse(new, own, [], extra, render=True, previous=previous)
 
     return analysed
 
 
-def _with_texts(library: Library, changed: Mapping[str, Source]) -> Library:
-    """A library with other texts for some files. It keeps no trees of them."""
+def _with_texts(library: Library, changed: Mapping[str, Source], pieces: PieceTrees) -> Library:
+    """A library with other texts for some files."""
     new = {*changed.values()}
+
+    def parsed(source: Source, report: Report) -> Tree | None:
+        if source not in new:
+            return library.parse(source, report)
+        return pieces.parse(source) or parse_with_recovery(source, report)
 
     def now(found: Source | None) -> Source | None:
         return found if found is None else changed.get(found.name, found)
@@ -131,9 +141,7 @@ def _with_texts(library: Library, changed: Mapping[str, Source]) -> Library:
         template=lambda file: now(library.template(file)),
         own_template=lambda file: now(library.own_template(file)),
         release=lambda source: None,
-        parse=lambda source, report: (parse_with_recovery if source in new else library.parse)(
-            source, report
-        ),
+        parse=parsed,
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from smachac.pysource.coverage import Coverage, UnknownPlace
+from smachac.pysource.machines.coverage import Coverage, UnknownPlace
 from smachac.report.json import place
 
 MOST_SHOWN = 3

@@ -20,7 +20,7 @@ from smachac.frontend.types.value_facts import NAMES
 from smachac.interpreter.scenario import SCENARIO_FIELDS, STEP_FIELDS
 from smachac.ir.nodes import FunctionResult, KeyRole, StateKind, VariableRole
 from smachac.ir.types import MOST_BOUND, WORDS
-from smachac.pysource.ros_names import ROS_VERSIONS
+from smachac.pysource.modules.ros_names import ROS_VERSIONS
 from smachac.robots import description, faults, scene
 
 Schema: TypeAlias = dict[str, Any]

@@ -329,7 +329,7 @@ _ARM: Table = {
         fields.positive, "The tolerance of each joint at the end of a move (rad).", 0.002
     ),
     "efforts": Field(
-        fields.named(fields.positive),
+        fields.named(fields.positive, least=0),
         "Largest torques of joints, by name (N m); they replace those of the URDF file.",
         (),
     ),
@@ -440,12 +440,12 @@ _ROBOT: Table = {
         fields.texts, "The names of the links, for a robot whose URDF file is not read.", ()
     ),
     "packages": Field(
-        fields.named(fields.text),
+        fields.named(fields.text, least=0),
         "Folders of ROS packages, by name: those that the URDF file names.",
         (),
     ),
     "arguments": Field(
-        fields.named(_argument), "Values of `<xacro:arg>`, by name, for a xacro file.", ()
+        fields.named(_argument, least=0), "Values of `<xacro:arg>`, by name, for a xacro file.", ()
     ),
 }
 

@@ -46,9 +46,12 @@ class Files:
 
     def read(self, name: str) -> str:
         """The text of a file. Raises RefusedError and OSError."""
+        from os.path import relpath
+
         from smachac.robots.encodings import decoded
 
         path = Path(name).absolute()
+        name = relpath(path, self.main.parent)
         inside = path.resolve().is_relative_to(self.project.resolve())
         # Installed packages often consist of links to their sources.
         if not inside and not any(
@@ -90,12 +93,14 @@ def expand(task: Mapping[str, Any]) -> dict[str, Any]:
     import xacro
     from xacro import substitution_args
 
+    from smachac.robots.xacro_calls import MacroCalls
     from smachac.robots.xacro_expressions import Evaluator
     from smachac.robots.xml_tree import XmlError, parse
 
     main = Path(task["file"]).absolute()
     files = Files(main, {name: Path(folder) for name, folder in task["packages"].items()})
     evaluator = Evaluator(xacro.NameSpace, xacro.YamlDictWrapper)
+    calls = MacroCalls(xacro)
     current = {"file": str(main)}
 
     def parsed(_: object, name: str | None = None) -> Any:
@@ -118,7 +123,9 @@ def expand(task: Mapping[str, Any]) -> dict[str, Any]:
 
         return StringIO(files.read(name))
 
+    xacro.handle_macro_call = calls
     _restrict(xacro, substitution_args, files, evaluator, parsed, opened)
+    written = attribute = ""
     try:
         document: Any = xacro.process_file(str(main), mappings=dict(task["arguments"]))
         text = document.toprettyxml("  ")
@@ -127,7 +134,6 @@ def expand(task: Mapping[str, Any]) -> dict[str, Any]:
         return {"text": text, "files": [*files.read_texts]}
     except RecursionError:
         message, help = "a macro calls itself without an end", "call it in `<xacro:if>` only"
-        written = ""
     except XmlError as error:
         source = files.read_texts[current["file"]]
         return _answer(error.message, error.help, current["file"], source, error.place)
@@ -142,12 +148,24 @@ def expand(task: Mapping[str, Any]) -> dict[str, Any]:
             message = f"the argument `{cause}` has no value"
             help = f"write `arguments: {{{cause}: ...}}` in the description of the robot"
             written = f"$(arg {cause})"
-    stack = [str(Path(name).absolute()) for name in xacro.filestack or [main] if name]
-    file = next((name for name in reversed(stack) if name in files.read_texts), str(main))
-    source = files.read_texts.get(file, "")
-    start = source.find(written) if written else -1
-    place = (start, start + len(written)) if start >= 0 else (0, 0)
-    return _answer(message, help, file, source, place)
+        if fault := calls.fault(cause):
+            message, help, attribute = fault
+            written = ""
+    texts = _innermost_first(xacro, files.read_texts)
+    for file, source in texts:
+        if written and (start := source.find(written)) >= 0:
+            return _answer(message, help, file, source, (start, start + len(written)))
+    file, place = calls.place(texts, attribute) or (texts[0][0] if texts else str(main), (0, 0))
+    return _answer(message, help, file, files.read_texts.get(file, ""), place)
+
+
+def _innermost_first(xacro: Any, texts: Mapping[str, str]) -> list[tuple[str, str]]:
+    """The files that were read, with their texts: first those of the macros that are expanded, then
+    those that include others, then the rest."""
+    macros = [macro.history[-1][-1] for macro in reversed(xacro.macrostack or [])]
+    names = [*macros, *reversed(xacro.filestack or [])]
+    order = [str(Path(name).absolute()) for name in names if name]
+    return [(name, texts[name]) for name in dict.fromkeys([*order, *texts]) if name in texts]
 
 
 def _restrict(

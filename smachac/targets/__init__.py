@@ -13,7 +13,7 @@ from keyword import iskeyword
 from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, Machine, StateType
-from smachac.pysource.user_code import Declared
+from smachac.pysource.modules.user_code import Declared
 from smachac.records import dataclass, field
 from smachac.version import __version__
 

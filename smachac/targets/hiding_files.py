@@ -12,7 +12,7 @@ from unicodedata import normalize
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.ir.nodes import Machine
 from smachac.ir.python_code import parse_module
-from smachac.pysource.ros_names import MESSAGES, ROS_VERSIONS, importable
+from smachac.pysource.modules.ros_names import MESSAGES, ROS_VERSIONS, importable
 from smachac.targets import stem
 from smachac.targets.errors import hiding_file
 

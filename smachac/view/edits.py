@@ -14,12 +14,12 @@ from smachac.diagnostics.source import Source
 from smachac.frontend.files import disk_library
 from smachac.ir.recursion import deep_recursion
 from smachac.refactor.autofix import differences
-from smachac.refactor.edit import BadEditError, Edit, EditResult, Operation, edit_of, perform
 from smachac.refactor.edited_script import EditedScript, HasErrorsError
 from smachac.refactor.editor import RefusedError
 from smachac.refactor.locate import NotFoundError
 from smachac.report.state_types import usable_types
 from smachac.targets.html.model import finding_data
+from smachac.view.graphical_edit import BadEditError, Edit, EditResult, Operation, edit_of, perform
 from smachac.view.server import ActionError
 
 Texts = Mapping[str, str]

@@ -1,4 +1,4 @@
-"""What the rules say of combinations, against all combinations of small concurrences."""
+"""The rules of concurrences, against all combinations of small concurrences."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from smachac.analysis import outcome_rules
 from smachac.analysis.outcome_rules import Combination, Rules, UndecidedError, sound_concurrence
-from smachac.checks.concurrence.combinations import written
+from smachac.checks.findings.help_text import in_conditions
 from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from smachac.ir.nodes import Concurrence, Node, StateMachine
 from tests.support.examples import examples
@@ -347,7 +347,7 @@ def test_a_concurrence_inside_one_ends_only_as_its_rules_say() -> None:
 
 
 def test_combinations_are_written_as_in_a_script() -> None:
-    assert written({"LEFT": "done", "RIGHT": "aborted"}) == "`LEFT: done`, `RIGHT: aborted`"
+    assert in_conditions({"LEFT": "done", "RIGHT": "aborted"}) == "`LEFT: done`, `RIGHT: aborted`"
 
 
 def test_a_misspelt_rule_is_one_fault() -> None:

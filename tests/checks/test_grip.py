@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from smachac.checks.help_text import names_apart
+from smachac.checks.findings.help_text import names_apart
 from smachac.diagnostics.source import Source
 from smachac.driver import analyse
 from smachac.frontend.loader import memory_library

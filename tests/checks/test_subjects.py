@@ -15,7 +15,7 @@ from smachac.checks import check_machine, rules, subjects
 from smachac.driver import CODES, read_machine
 from smachac.frontend.files import disk_library, read_source
 from smachac.ir.nodes import Machine
-from smachac.pysource.user_code import ProjectCode
+from smachac.pysource.modules.user_code import ProjectCode
 from smachac.report.explain_code import MAIN, explanation
 from smachac.targets import load_target
 from tests.strategies.machines import machines

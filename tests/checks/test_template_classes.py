@@ -9,7 +9,7 @@ import pytest
 from smachac.diagnostics.source import Source
 from smachac.driver import analyse
 from smachac.frontend.loader import memory_library
-from smachac.pysource.ros_names import Ros
+from smachac.pysource.modules.ros_names import Ros
 from tests.trust.project_text import BUILT_IN, analysed
 
 TEMPLATE = """\

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from smachac.checks.types.value_places import place_of_part
+from smachac.checks.findings.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from smachac.diagnostics.source import Source, Span
 from tests.trust.project_text import analysed

@@ -9,7 +9,7 @@ import pytest
 import smachac
 from smachac import driver
 from smachac.commands.cli import main
-from smachac.pysource.template_sources import uses_own_templates
+from smachac.pysource.templates.template_sources import uses_own_templates
 
 SCRIPT = """\
 name: sm

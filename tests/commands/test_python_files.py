@@ -334,6 +334,9 @@ def test_one_machine_is_chosen(run: Run) -> None:
     assert (code, "--machine NAME" in err, "known: sm, top" in err) == (2, True, True)
     code, _, err = run("build", "machine.py", "--target", "dot", "--machine", "tpo")
     assert (code, "did you mean `top`?" in err) == (2, True)
+    write("many.py", TWO + TWO[TWO.index("top =") :] * 30)
+    err = run("build", "many.py", "--target", "dot", "-o", "-")[2]
+    assert "top_19, and 12 more\n" in err
     assert run("build", "states.py", "--target", "dot")[0] == 2
     write("main.yml", "name: sm\ntemplate: Base\noutcomes: [done]\nstates: []\n")
     for command in (["build", "main.yml", "-t", "dot"], ["explain", "main.yml", "x"],
@@ -585,3 +588,13 @@ def test_watch(folder: Path) -> None:
     finally:
         process.kill()
         process.communicate()
+
+
+def test_a_folder_without_scripts(run: Run) -> None:
+    """The option for Python files is named where it finds some."""
+    code, _, err = run("check", ".")
+    assert (code, "there is no script in `.`" in err) == (2, True)
+    assert "`--python` checks the Python files" in err
+    Path("machine.py").unlink()
+    assert "--python" not in run("check", ".")[2]
+    assert "no script and no Python file with a state machine" in run("check", "--python", ".")[2]

@@ -33,6 +33,10 @@ STRICT = (
 """Warnings that generated headers and those of the runtime do not give either."""
 BARE = ("-fno-exceptions", "-fno-rtti")
 
+CLANG_FORMAT = "BasedOnStyle: LLVM\nColumnLimit: 0\n"
+"""The `.clang-format` that does not change generated code: the style of LLVM without a line length.
+The headers of the runtime have the style of LLVM with 100 columns."""
+
 PROGRAMS = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "smachac-tests"
 """The compiled programs of earlier runs, by the hash of their texts, flags and compiler."""
 

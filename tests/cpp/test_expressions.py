@@ -26,10 +26,9 @@ from smachac.targets.cpp.expressions import (
     cpp_expression,
     cpp_function,
 )
-from smachac.targets.cpp.project import CLANG_FORMAT
 from smachac.targets.cpp.types import UnportableError, cpp_float, cpp_string, cpp_type, cpp_value
 from smachac.verify.players.cpp import HEADERS
-from tests.cpp.compilers import BARE, COMPILERS, SANITIZED, Compiler
+from tests.cpp.compilers import BARE, CLANG_FORMAT, COMPILERS, SANITIZED, Compiler
 from tests.cpp.expression_programs import NAMES, Tally, cases, compare, portable, program
 from tests.strategies.expressions import NAMES_OF_VALUES, computations, expressions
 from tests.strategies.typed_expressions import userdata

@@ -12,10 +12,9 @@ import pytest
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
 from smachac.frontend.types.state_types import find_state_type
-from smachac.targets.cpp.project import CLANG_FORMAT
 from smachac.targets.cpp.user_classes import interface_hash
 from smachac.verify.players.cpp import HEADERS
-from tests.cpp.compilers import COMPILERS, Compiler
+from tests.cpp.compilers import CLANG_FORMAT, COMPILERS, Compiler
 from tests.cpp.test_user_classes import made
 from tests.support.examples import every
 

@@ -170,7 +170,7 @@ def test_a_generated_header_has_the_layout_of_clang_format(tmp_path: Path) -> No
     import shutil
     import subprocess
 
-    from smachac.targets.cpp.project import CLANG_FORMAT
+    from tests.cpp.compilers import CLANG_FORMAT
 
     tool = shutil.which("clang-format")
     if tool is None:

@@ -14,7 +14,7 @@ from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Concurrence, Container, Iterator, Machine, Node
 from smachac.ir.traversal import outcome_names
-from smachac.pysource.coverage import coverage_of
+from smachac.pysource.machines.coverage import coverage_of
 from smachac.targets.flexbe.names import RENAMED, Names, names_of
 from tests.flexbe.programs import files_of
 from tests.pipeline.test_differential import LIBRARY

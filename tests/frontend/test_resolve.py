@@ -96,6 +96,12 @@ def test_what_cannot_be_read_is_reported_once() -> None:
     assert faults == [(5, "SM004"), (6, "SM004"), (14, "SM002"), (17, "SM003")]
 
 
+def test_a_param_that_is_given_twice_is_reported() -> None:
+    text = SCRIPT.replace("robot: panda", "params: {kind: 1, kind: 2}")
+    _, report = resolved(text.replace("count: 3", "count: [[params, kind]]"))
+    assert [(item.span.line, item.code) for item in report] == [(6, "SM002")]
+
+
 @pytest.mark.parametrize("type_", ["0.0", "3", "true", "[float]", "null"])
 def test_the_type_of_an_initial_value_is_a_text(type_: str) -> None:
     """Without the finding, data with these fields would lose them in silence."""

@@ -10,7 +10,7 @@ import pytest
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
 from smachac.frontend.text.recovering_parser import parse_with_recovery
-from smachac.frontend.text.yaml_outline import form_of, outline, rows_of, strays_of
+from smachac.frontend.text.yaml_outline import dangling_count, form_of, outline, rows_of
 from smachac.frontend.text.yaml_tree import Map, Tree, parse
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -128,7 +128,7 @@ def test_examples_have_the_form_of_scripts() -> None:
         text = path.read_text("utf-8")
         if re.search(r"^states:\n +- |template:", text, re.MULTILINE):
             assert form_of(outline(rows_of(text))) == 0.0, path
-            assert strays_of(outline(rows_of(text))) == 0, path
+            assert dangling_count(outline(rows_of(text))) == 0, path
 
 
 def test_two_states_of_an_iterator_of_which_one_leads_to_the_other_are_left_alone() -> None:

@@ -240,6 +240,29 @@ def test_a_state_of_an_edited_file_that_has_not_changed_keeps_its_node(tmp_path:
     assert third.children[0].span.source is session.source(main)
 
 
+ROW = "name: sm\ntemplate: Base\noutcomes: [done, bad]\nuserdata: {goal: 1.0}\nstates:\n" + "".join(
+    f"- {name}:\n    template: PoseToJointPositionsState\n"
+    f"    remapping: {{pose: goal, joints: joints_{name}}}\n"
+    f"    transitions: {{succeeded: {after}, aborted: bad}}\n"
+    for name, after in (("A", "B"), ("B", "C"), ("C", "done"))
+)
+
+
+def test_states_in_no_container_keep_their_nodes(tmp_path: Path) -> None:
+    main = os.path.realpath(tmp_path / "main.yml")
+    session = Session([tmp_path])
+    session.change(main, ROW)
+    session.check(main)
+    kept = {node.name: node for node in session.machines(main)[0].root.children}
+    for old, new in (("succeeded: B", "succeeded: C"), ("joints: joints_A", "joints: goal")):
+        text = ROW.replace(old, new)
+        session.change(main, text)
+        assert found(session, main) == fresh(main, {main: text})
+        first, *others = session.machines(main)[0].root.children
+        assert first is not kept["A"]
+        assert all(node is kept[node.name] for node in others)
+
+
 NODE = """\
 name: node
 template: ROSBase

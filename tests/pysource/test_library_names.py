@@ -7,7 +7,7 @@ from types import ModuleType
 
 import pytest
 
-from smachac.pysource.library_names import MODULES, missing_name, module_of_library
+from smachac.pysource.modules.library_names import MODULES, missing_name, module_of_library
 from tests.trust.project_text import analysed
 
 MAIN = """\

@@ -273,3 +273,18 @@ def test_a_slip_in_a_text_with_a_lost_sign_has_its_repair(
     _, found = found_in({MAIN: text})
     edits = [edit for cluster in found for edit in cluster.repair.edits]
     assert edited_texts(edits).popitem()[1] == SCRIPT
+
+
+def test_an_analysis_after_others_has_the_findings_of_a_fresh_one() -> None:
+    edits = (("done: PICK", "done: PICKS"), ("block_pose: 1", "pose: 1"), ("- PICK:", "- PACK:"))
+    library = memory_library({MAIN: SCRIPT}, BUILT_IN)
+    source = Source(MAIN, SCRIPT)
+    analysed = again(analyse(source, library, []))
+    for old, new in edits:
+        text = SCRIPT.replace(old, new)
+        fresh = analyse(Source(MAIN, text), library, [], render=True).report
+        later = analysed({source: text}).report
+        assert [(item.code, item.span.start, item.finding.message) for item in later] == [
+            (item.code, item.span.start, item.finding.message) for item in fresh
+        ]
+        assert later

@@ -14,8 +14,8 @@ LAYERS = (
     ("robots", "records"),
     ("sim", "runtime", "grammars", "diagnostics", "version"),
     ("ir",),
-    ("pysource",),
-    ("analysis", "interpreter", "frontend"),
+    ("pysource", "interpreter"),
+    ("analysis", "frontend"),
     ("targets", "checks"),
     ("driver", "report"),
     ("__init__", "repair", "diff", "verify"),
@@ -53,6 +53,10 @@ HEAVY = {
 
 LATE = {"smachac/targets/templates/sandbox.py", "smachac/lsp/server.py"}
 """Modules that are made of a heavy package, and so are imported where they are used."""
+
+FLOORS = {"smachac.checks": 5, "smachac.frontend": 5, "smachac.pysource": 5, "smachac": 11}
+"""The most levels of imports between the folders and files directly in a room, and between the
+rooms."""
 
 Tree = Mapping[str, str]
 """Source texts by their path from the root of the repository, as `smachac/ir/nodes.py`."""
@@ -166,15 +170,39 @@ def has_rule(module: ast.Module) -> bool:
     )
 
 
-def folder_circles(tree: Tree) -> list[str]:
-    """The folders of `checks/` that import each other. A module outside the folders counts as one,
-    and so does the list of all rules, `smachac.checks`."""
-    pairs = {
-        (".".join(importer.split(".")[:3]), ".".join(module.split(".")[:3]))
-        for importer, module in import_pairs(tree)
-        if part_of(importer) == part_of(module) == "checks"
+def rule_folder_imports(tree: Tree) -> list[str]:
+    """Each import of a folder with rules by another one: what both need is in `findings/`, or in
+    `analysis/` if it is a fact of a machine."""
+    rules = {
+        part_inside(module_name(path), "smachac.checks")
+        for path, text in tree.items()
+        if path.startswith("smachac/checks/") and has_rule(ast.parse(text))
     }
-    return circles(pair for pair in pairs if pair[0] != pair[1])
+    pairs = part_pairs(set(import_pairs(tree)), "smachac.checks")
+    return sorted(f"{one} imports {other}" for one, other in pairs if {one, other} <= rules)
+
+
+def part_pairs(pairs: Iterable[tuple[str, str]], room: str) -> set[tuple[str, str]]:
+    """Each import between two parts of a room: the importer, the imported."""
+    parts = {
+        (part_inside(importer, room), part_inside(module, room))
+        for importer, module in pairs
+        if f"{importer}.".startswith(f"{room}.") and f"{module}.".startswith(f"{room}.")
+    }
+    return {(one, other) for one, other in parts if one != other}
+
+
+def part_inside(module: str, room: str) -> str:
+    """The part of a room that has a module: a folder or a file directly in the room. The package of
+    the room itself, as `smachac.checks`, is a part too."""
+    return ".".join(module.split(".")[: room.count(".") + 2])
+
+
+def floors(pairs: Iterable[tuple[str, str]], room: str) -> int:
+    """The number of levels of the imports between the parts of a room: a part is one above the
+    highest that it imports. Raises NetworkXUnfeasible if parts import each other."""
+    graph: nx.DiGraph[str] = nx.DiGraph(part_pairs(pairs, room))
+    return len(list(nx.topological_generations(graph)))
 
 
 def heavy_faults(tree: Tree) -> Iterator[str]:
@@ -224,8 +252,15 @@ def test_only_the_list_of_our_rules_imports_modules_with_rules(ours: Tree) -> No
 
 
 @pytest.mark.slow
-def test_our_folders_of_rules_do_not_import_each_other_in_a_circle(ours: Tree) -> None:
-    assert folder_circles(ours) == []
+def test_our_folders_of_rules_do_not_import_each_other(ours: Tree) -> None:
+    assert rule_folder_imports(ours) == []
+
+
+@pytest.mark.slow
+def test_our_rooms_have_few_floors(ours: Tree) -> None:
+    pairs = set(import_pairs(ours))
+    found = {room: floors(pairs, room) for room in FLOORS}
+    assert all(1 < found[room] <= most for room, most in FLOORS.items()), found
 
 
 def test_our_modules_load_no_heavy_package_when_imported(ours: Tree) -> None:
@@ -354,22 +389,42 @@ def test_the_list_of_rules_imports_modules_with_rules(path: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("path", "text", "importer"),
+    ("path", "text", "fault"),
     [
-        ("ros/fields.py", "from smachac.checks.types import places", "smachac.checks.ros"),
-        ("ros/fields.py", "def f():\n    from ..types.places import at", "smachac.checks.ros"),
-        ("edits.py", "import smachac.checks.types.places", "smachac.checks.edits"),
-        ("__init__.py", "from smachac.checks.types import places", "smachac.checks"),
+        ("timing/stops.py", "from smachac.checks.robot import grip", "timing imports robot"),
+        ("timing/waits.py", "def f():\n    from ..robot.words import at", "timing imports robot"),
+        ("robot/words.py", "import smachac.checks.timing.timeouts", "robot imports timing"),
+        ("robot/words.py", "from smachac.checks.robot import grip", None),
+        ("timing/waits.py", "from smachac.checks.findings import places", None),
+        ("__init__.py", "from smachac.checks.timing import timeouts", None),
     ],
 )
-def test_circles_of_folders_are_found(path: str, text: str, importer: str) -> None:
-    """Modules of two folders import each other's folder, and no module is in a circle itself."""
-    tree = {f"smachac/checks/{path}": text, "smachac/checks/types/places.py": ""}
-    assert folder_circles(tree) == []
-    back = module_name(f"smachac/checks/{path}")
-    tree["smachac/checks/types/words.py"] = f"import {back}"
-    assert import_circles(tree) == []
-    assert folder_circles(tree) == [f"{importer} smachac.checks.types"]
+def test_imports_of_other_folders_of_rules_are_found(
+    path: str, text: str, fault: str | None
+) -> None:
+    names = ("timing/timeouts.py", "robot/grip.py")
+    tree = {f"smachac/checks/{name}": RULE for name in names}
+    tree |= {"smachac/checks/robot/words.py": "", "smachac/checks/findings/places.py": ""}
+    assert rule_folder_imports(tree) == []
+    expected = [fault.replace("timing", "smachac.checks.timing")] if fault else []
+    expected = [line.replace("robot", "smachac.checks.robot") for line in expected]
+    assert rule_folder_imports({**tree, f"smachac/checks/{path}": text}) == expected
+
+
+def test_floors_are_levels_of_imports_between_parts() -> None:
+    tree = {
+        "smachac/checks/__init__.py": "from smachac.checks.robot import grip",
+        "smachac/checks/robot/grip.py": "def f():\n    from smachac.checks import rule",
+        "smachac/checks/robot/motion.py": "from smachac.checks.robot import grip",
+        "smachac/checks/rule.py": "from smachac.ir import nodes",
+        "smachac/checks/words.py": "",
+        "smachac/ir/nodes.py": "",
+    }
+    rooms = ("smachac.checks", "smachac.ir", "smachac")
+    assert [floors(import_pairs(tree), room) for room in rooms] == [3, 0, 2]
+    tree["smachac/checks/rule.py"] = "from smachac.checks.robot import motion"
+    with pytest.raises(nx.NetworkXUnfeasible):
+        floors(import_pairs(tree), "smachac.checks")
 
 
 @pytest.mark.parametrize(

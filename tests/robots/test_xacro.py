@@ -111,8 +111,8 @@ def test_packages_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
         ('<xacro:include filename="none.xacro"/>', "was not found", "none.xacro"),
         ("<xacro:include filename=\"../../secret.xacro\"/>", "is outside of the project", "secret.xacro"),
         ("<link name=\"${xacro.load_yaml('../../secret.yaml')}\"/>", "is outside of the project", "secret.yaml"),
-        ('<xacro:macro name="m" params=""><xacro:m/></xacro:macro><xacro:m/>', "a macro calls itself without an end", ""),
-        ("<xacro:unknown/>", "unknown macro name: xacro:unknown", ""),
+        ('<xacro:macro name="m" params=""><xacro:m/></xacro:macro><xacro:m/>', "a macro calls itself without an end", "<xacro:m/>"),
+        ("<xacro:unknown/>", "the macro `unknown` is not defined", "<xacro:unknown/>"),
     ],
 )  # fmt: skip
 def test_mistakes(tmp_path: Path, body: str, message: str, place: str) -> None:
@@ -122,6 +122,51 @@ def test_mistakes(tmp_path: Path, body: str, message: str, place: str) -> None:
     found = mistake(path)
     assert message in found[0]
     assert found[1:] == ("arm.urdf.xacro", place)
+
+
+NESTED = """\
+  <xacro:macro name="inner" params="name parent:=base *shape">
+    <link name="${name}"/>
+  </xacro:macro>
+  <xacro:macro name="outer" params="name"><xacro:inner CALL><link/></xacro:inner></xacro:macro>
+</robot>
+"""
+
+
+@pytest.mark.parametrize(
+    ("call", "message", "place", "help"),
+    [
+        ('name="${nam}"', "the name `nam` is not defined", "nam", "correct the macro file"),
+        ('nam="${name}"', "the macro `inner` has no parameter `nam`", 'nam="${name}"', "did you mean `name`?"),
+        ('size="1"', "the macro `inner` has no parameter `size`", 'size="1"', "remove it, or add it"),
+        ('parent="a"', "the macro `inner` needs `name`", '<xacro:inner parent="a">', 'write `name="..."`'),
+    ],
+)  # fmt: skip
+def test_mistakes_in_a_call_inside_a_macro(
+    tmp_path: Path, call: str, message: str, place: str, help: str
+) -> None:
+    """The place is the call in the macro around it, in the included file."""
+    body = '<xacro:include filename="parts/nested.xacro"/><link name="base"/>'
+    body += """<xacro:property name="limits" value="${xacro.load_yaml('limits.yaml')}"/>"""
+    body += '<xacro:outer name="a"/><xacro:inner name="b"><link/></xacro:inner></robot>'
+    path = project(
+        tmp_path, main=HEAD + body, **{"parts/nested.xacro": HEAD + NESTED.replace("CALL", call)}
+    )
+    with pytest.raises(XacroError) as error:
+        expand(path, {}, {})
+    found = error.value
+    start, end = found.place
+    assert (found.message, found.file.name) == (message, "nested.xacro")
+    assert found.text[start:end] == place
+    assert found.help.startswith(help)
+
+
+def test_a_macro_with_a_similar_name_is_proposed(tmp_path: Path) -> None:
+    body = '<xacro:include filename="parts/macros.xacro"/><xacro:turned name="a"/></robot>'
+    path = project(tmp_path, main=HEAD + body)
+    with pytest.raises(XacroError, match="the macro `turned` is not defined") as error:
+        expand(path, {}, {})
+    assert error.value.help == "did you mean `turning`?"
 
 
 def test_an_optional_environment_and_include(tmp_path: Path) -> None:

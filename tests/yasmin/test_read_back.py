@@ -28,7 +28,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.nodes import Iterator as IteratorNode
 from smachac.ir.traversal import leads_to_child, outcome_names, remapping, walk
-from smachac.pysource.coverage import coverage_of
+from smachac.pysource.machines.coverage import coverage_of
 from smachac.targets.yasmin import TARGET
 from tests.pipeline.test_differential import LIBRARY
 from tests.strategies.full_machines import busy_machines

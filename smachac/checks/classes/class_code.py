@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 
 from smachac.analysis.context import Context
-from smachac.checks import notation
-from smachac.checks.classes.renamed_names import renamed_in_interface
-from smachac.checks.classes.types_with_code import (
+from smachac.checks.findings import notation
+from smachac.checks.findings.help_text import did_you_mean, other_place
+from smachac.checks.findings.renamed_names import renamed_in_interface
+from smachac.checks.findings.types_with_code import (
     declared_here,
     leaves_by_type,
     names_by_type,
@@ -19,7 +20,6 @@ from smachac.checks.classes.types_with_code import (
     own_types,
     used_here,
 )
-from smachac.checks.help_text import did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.negation import is_negation

@@ -11,7 +11,7 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import renamed_name
 from smachac.ir.nodes import StateType
-from smachac.pysource.user_code import Declared, Difference, StateClass, Words
+from smachac.pysource.modules.user_code import Declared, Difference, StateClass, Words
 from smachac.records import replace
 
 

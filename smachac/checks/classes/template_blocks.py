@@ -11,8 +11,8 @@ from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
-from smachac.pysource.jinja_tags import tags
-from smachac.pysource.user_code import TemplateBody
+from smachac.pysource.modules.jinja_tags import tags
+from smachac.pysource.modules.user_code import TemplateBody
 from smachac.records import replace
 
 _TEST = re.compile(

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from smachac.analysis.context import Context
-from smachac.checks import notation
-from smachac.checks.classes.types_with_code import used_here
+from smachac.checks.findings import notation
+from smachac.checks.findings.types_with_code import used_here
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span
-from smachac.pysource.template_sources import template_sources, uses_own_templates
-from smachac.pysource.user_code import StateFault
+from smachac.pysource.modules.user_code import StateFault
+from smachac.pysource.templates.template_sources import template_sources, uses_own_templates
 from smachac.records import replace
 
 
@@ -90,7 +90,7 @@ def _template_imports(context: Context) -> Iterator[Finding]:
         return
     if not uses_own_templates(machine, project.library):
         return
-    from smachac.pysource.imports import missing_in_template
+    from smachac.pysource.modules.imports import missing_in_template
 
     for file, source in template_sources(machine, project.library):
         if project.library.own_template(file) is not None:

@@ -22,21 +22,20 @@ from smachac.analysis.expression_errors import is_method, kinds, type_text
 from smachac.analysis.expression_types import type_of_call
 from smachac.analysis.function_slots import named_functions
 from smachac.analysis.type_inference import TypeFlow
-from smachac.checks.classes.class_value_types import none_writes
 from smachac.checks.code.function_results import (
     NONE_EFFECTS,
     WAIT_FAILS,
     always_true,
     overwritten_keys,
-    readable_slots,
     silent_functions,
-    slot_owner,
 )
 from smachac.checks.code.outcome_results import wrong_outcomes
-from smachac.checks.help_text import calls, in_quotes_for, other_place
+from smachac.checks.findings.class_value_types import CHANGES, none_writes
+from smachac.checks.findings.code_findings import readable_slots, slot_owner
+from smachac.checks.findings.help_text import calls, in_quotes_for, other_place
+from smachac.checks.findings.number_help import suggested_number
+from smachac.checks.findings.type_origins import written
 from smachac.checks.rule import rule
-from smachac.checks.types.number_help import suggested_number
-from smachac.checks.types.type_origins import written
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span
@@ -280,9 +279,7 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
                 continue
         else:
             own = len(parameters(tree))
-            what = f"has {own or 'no'} parameter{'s' * (own != 1)}, but the state passes {len(due)}"
-            what += f" argument{'s' * (len(due) != 1)}: {_names(due)}"
-            effect = None
+            what, effect = _wrong_number(own, due), None
         yield Finding(
             span=_head(slot, tree),
             message=f"the function of {slot_owner(slot, node)} {what}",
@@ -304,9 +301,7 @@ def _wrong_parameters(
     due, own = slot.arguments or (), len(facts.parameters)
     found = swapped(facts.parameters, due)
     if not facts.accepts(len(due)):
-        span, effect = facts.word.span, None
-        what = f"has {own or 'no'} parameter{'s' * (own != 1)}, but the state passes {len(due)}"
-        what += f" argument{'s' * (len(due) != 1)}: {_names(due)}"
+        span, effect, what = facts.word.span, None, _wrong_number(own, due)
     elif found:
         span, effect = facts.head, ORDER_EFFECT
         what = f"has the parameters {_names(found)}, but the state passes {_names(due)}"
@@ -321,6 +316,12 @@ def _wrong_parameters(
         related=(*other_place(slot.code.span, "it is called here"), *calls(node, slot.code.span)),
         node=path,
     )
+
+
+def _wrong_number(own: int, due: Sequence[str]) -> str:
+    """The number of parameters against the arguments, as part of a message."""
+    what = f"has {own or 'no'} parameter{'s' * (own != 1)}, but the state passes {len(due)}"
+    return f"{what} argument{'s' * (len(due) != 1)}: {_names(due)}"
 
 
 def own_parameters(own: Sequence[str], due: Iterable[str]) -> list[str]:
@@ -393,12 +394,6 @@ def _head(slot: CodeSlot, tree: ast.Lambda) -> Span:
 
 
 ORDER_EFFECT = "the arguments are passed in that order: each name has a wrong value"
-
-NOTHING_RETURNED = {
-    "list": frozenset(["append", "extend", "insert", "remove", "sort", "reverse", "clear"]),
-    "mapping": frozenset(["update", "clear"]),
-}
-"""The methods that change a value and return None, by the kind of the value."""
 
 NO_VALUE = frozenset([
     "logging.info", "random.seed", "random.shuffle", "rospy.loginfo", "rospy.logwarn",
@@ -526,7 +521,7 @@ def _value_fault(
         case ast.Call(func=ast.Attribute(value=value, attr=method)):
             type_ = _type(context, path, node, slot, value)
             known = next(iter(kinds(type_)), "") if len(kinds(type_)) == 1 else ""
-            if known and method not in NOTHING_RETURNED.get(known, ()):
+            if known and method not in CHANGES.get(known, ()):
                 return None
             if not known and (method not in ALWAYS_NOTHING or type_ != ANY):
                 return None

@@ -9,17 +9,17 @@ from collections.abc import Iterator
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_sites import ExpressionSite
-from smachac.checks.classes.class_value_types import (
+from smachac.checks.code.null_keys import null_keys
+from smachac.checks.findings.class_value_types import (
     missing_choices,
     wrong_comparisons,
     wrong_operations,
     wrong_parts,
 )
-from smachac.checks.code.operand_findings import code_owner, fault_finding, faults_of
-from smachac.checks.help_text import calls
+from smachac.checks.findings.code_findings import code_owner, fault_finding, faults_of
+from smachac.checks.findings.help_text import calls
+from smachac.checks.findings.value_places import place_of_part
 from smachac.checks.rule import rule
-from smachac.checks.types.value_places import place_of_part
-from smachac.checks.userdata.null_keys import null_keys
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.spelling import in_quotes

@@ -8,34 +8,12 @@ from collections.abc import Iterator, Mapping
 
 from smachac.analysis.code_slots import CodeSlot, is_condition, results
 from smachac.analysis.context import Context
-from smachac.analysis.expression_types import type_of_call
 from smachac.analysis.function_slots import named_functions
-from smachac.analysis.type_lattice import unit_of
-from smachac.analysis.units import conversion
-from smachac.checks.help_text import calls, other_place
+from smachac.checks.findings.code_findings import readable_slots, slot_owner
+from smachac.checks.findings.help_text import calls, other_place
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span
-from smachac.ir.code_places import node_place
 from smachac.ir.nodes import Leaf, Node, VariableRole
-
-
-def readable_slots(context: Context) -> Iterator[tuple[str, Node, CodeSlot, ast.expr]]:
-    """The code slots of a machine whose code Python can read."""
-    for path, node, slot in context.code_slots:
-        tree = slot.tree
-        if tree is not None:
-            yield path, node, slot, tree
-
-
-def slot_owner(slot: CodeSlot, node: Node) -> str:
-    """The place of a slot, as part of a message."""
-    match slot.role:
-        case "callbacks":
-            return f"the callback `{slot.name}` of `{node.name}`"
-        case "conditions":
-            return f"the condition `{slot.name}` of `{node.name}`"
-    return f"`{slot.name}` of `{node.name}`"
-
 
 WAIT_FAILS = "the state fails when it begins to wait"
 
@@ -138,29 +116,3 @@ def _true_condition(
         node=path,
         severity=Severity.WARNING,
     )
-
-
-def wrong_units(context: Context) -> Iterator[Finding]:
-    """The functions of a state whose result has another unit than the variable (SM504)."""
-    types = context.machine.state_types
-    for path, node, slot, tree in readable_slots(context):
-        fact = types[node.type].variables.get(slot.name) if node.type in types else None
-        wanted = unit_of(fact.type) if fact is not None else ""
-        if not wanted or not isinstance(node, Leaf) or not isinstance(tree, ast.Lambda):
-            continue
-        given = unit_of(type_of_call(slot.code, context.types.names(path, node)))
-        factor = conversion(given, wanted)
-        if not given or given == wanted:
-            continue
-        body = ast.unparse(tree.body)
-        simple = isinstance(tree.body, ast.Attribute | ast.Call | ast.Name | ast.Subscript)
-        product = f"{body if simple else f'({body})'} * {factor:.6g}" if factor else ""
-        yield Finding(
-            span=node_place(slot.code, tree.body),
-            message=f"{slot_owner(slot, node)} is in `{wanted}`, but its function returns a number"
-            f" in `{given}`",
-            arguments=(slot.name, given, wanted),
-            help=f"write `{product}`" if product else f"return a number in `{wanted}`",
-            related=calls(node, slot.code.span),
-            node=path,
-        )

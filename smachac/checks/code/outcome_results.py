@@ -9,8 +9,8 @@ from typing import NamedTuple
 from smachac.analysis.code_slots import CodeSlot
 from smachac.analysis.context import Context
 from smachac.analysis.message_code import MessageCode, content_of, message_code, slot_results
-from smachac.checks.code.function_results import slot_owner
-from smachac.checks.help_text import calls, did_you_mean, ends_of, other_place
+from smachac.checks.findings.code_findings import slot_owner
+from smachac.checks.findings.help_text import calls, did_you_mean, ends_of, other_place
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed

@@ -26,16 +26,16 @@ from smachac.ir.expressions import looks_like_expression
 from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, StateType, Struct
 from smachac.ir.script_code import USERDATA, script_code
 from smachac.ir.traversal import expressions
-from smachac.pysource.library_names import (
+from smachac.pysource.modules.library_names import (
     MODULES,
     attributes,
     is_shadowed,
     missing_name,
     only_imported,
 )
-from smachac.pysource.ros_names import importable, message_module
-from smachac.pysource.template_sources import template_sources
-from smachac.pysource.user_code import UserCode
+from smachac.pysource.modules.ros_names import importable, message_module
+from smachac.pysource.modules.user_code import UserCode
+from smachac.pysource.templates.template_sources import template_sources
 
 FUNCTIONS = tuple(name for name in dir(builtins) if name.islower() and name[0] != "_")
 """The built-in functions and types of Python."""
@@ -373,7 +373,7 @@ def _import_fix(use: _Use, own: Sequence[Source], library: UserCode) -> NameFix 
     name = use.name.id
     if name in (*USERDATA, "params") or name in {key.name for key in use.node.inputs}:
         return None
-    from smachac.pysource.modules import Module, load_module
+    from smachac.pysource.modules.modules import Module, load_module
 
     for source in own:
         for line in _FROM.finditer(source.text):

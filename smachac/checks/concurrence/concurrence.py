@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import has_no_interface
+from smachac.analysis.iterator_stops import inverted_renames
 from smachac.analysis.outcome_rules import (
     Combination,
     Rules,
@@ -18,14 +19,18 @@ from smachac.analysis.outcome_rules import (
     without_other,
 )
 from smachac.analysis.possible_outcomes import Judged
-from smachac.checks import notation
-from smachac.checks.concurrence.combinations import written
-from smachac.checks.concurrence.inverted_rules import inverted_rules, transposed_rules
-from smachac.checks.help_text import calls, did_you_mean, ends_of, other_place
+from smachac.analysis.watched_branches import missing_joins
+from smachac.checks.findings import notation
+from smachac.checks.findings.help_text import (
+    calls,
+    did_you_mean,
+    ends_of,
+    in_conditions,
+    other_place,
+)
+from smachac.checks.findings.inverted_rules import inverted_rules, transposed_rules
+from smachac.checks.findings.value_places import place_of_value
 from smachac.checks.rule import rule
-from smachac.checks.timing.iterator_stops import turned_renames
-from smachac.checks.timing.watched_branches import missing_joins
-from smachac.checks.types.value_places import place_of_value
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
@@ -252,8 +257,8 @@ def _rules_for_both(each: Judged) -> Iterator[Finding]:
             continue
         yield Finding(
             span=entry.span,
-            message=f"the rule for `{entry.outcome}` needs {written(needed)}, but `join: any` of"
-            f" `{node.name}` preempts the others when the first of them ends",
+            message=f"the rule for `{entry.outcome}` needs {in_conditions(needed)}, but `join:"
+            f" any` of `{node.name}` preempts the others when the first of them ends",
             arguments=(entry.outcome, *_names(needed)),
             help="write `join: all`, or list only one of them in the rule",
             effect="",
@@ -296,15 +301,15 @@ def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:
     for (name, result), span in zip(container.final_map if endings else (), spans, strict=False):
         if name in known:
             continue
-        inverted = (name, result) in turned_renames(container)
-        turned = f"write `{notation.entry(container, result, name)}`: the outcome that is renamed"
-        turned += " comes first"
+        inverted = (name, result) in inverted_renames(container)
+        in_order = f"write `{notation.entry(container, result, name)}`: the outcome that is renamed"
+        in_order += " comes first"
         yield Finding(
             span=span,
             message=f"the final outcome map of `{container.name}` renames `{name}`, but its state"
             " never ends with that outcome",
             arguments=(name,),
-            help=(turned if inverted else did_you_mean(guesser(known)(name)))
+            help=(in_order if inverted else did_you_mean(guesser(known)(name)))
             or f"use one of the outcomes with which it can end: {listed(known)}",
             effect="SMACH never uses the entry",
             related=calls(container, span),
@@ -432,7 +437,7 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
 def _uncovered(path: str, node: Concurrence, rules: Rules, missed: Combination) -> Finding:
     """The finding about a combination of outcomes that no rule matches."""
     needed = rules.shown(missed, {}, rules.all)
-    shown = written(needed) or "any combination"
+    shown = in_conditions(needed) or "any combination"
     if node.default_outcome:
         severity, span = Severity.INFO, node.default_span
         message = f"no rule of `{node.name}` matches {shown}: it ends with the default outcome"
@@ -621,7 +626,7 @@ def _overlapping(each: Judged, number: int, tie: Combination) -> Finding:
     return Finding(
         span=here.span,
         message=f"the rules for `{above.outcome}` and `{below.outcome}` both hold for"
-        f" {written(tie)}: SMACH for Noetic ends with `{above.outcome}`, SMACH for ROS 2 with"
+        f" {in_conditions(tie)}: SMACH for Noetic ends with `{above.outcome}`, SMACH for ROS 2 with"
         f" `{below.outcome}`",
         arguments=(above.outcome, below.outcome, *_names(tie)),
         help="add a condition to the rule that must win, as in"

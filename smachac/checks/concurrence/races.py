@@ -11,10 +11,10 @@ from smachac.analysis.control_flow import children_names
 from smachac.analysis.raced_outputs import RacedOutput, raced_output
 from smachac.analysis.resource_claims import Held, prefixes
 from smachac.analysis.type_lattice import present
-from smachac.checks import notation
 from smachac.checks.concurrence.raced_keys import is_never_set, own_key
-from smachac.checks.edits import likely, with_remapping
-from smachac.checks.help_text import calls, other_place
+from smachac.checks.findings import notation
+from smachac.checks.findings.edits import likely, with_remapping
+from smachac.checks.findings.help_text import calls, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.repair import Edit

@@ -17,15 +17,15 @@ from smachac.analysis.control_flow import (
     places_of,
     unknown_outcomes,
 )
-from smachac.checks import notation
-from smachac.checks.edits import adding_outcome, likely
-from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
+from smachac.checks.findings import notation
+from smachac.checks.findings.condition_outcomes import unknown_endings
+from smachac.checks.findings.edits import adding_outcome, likely
+from smachac.checks.findings.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.names.other_outcomes import (
     missing_default,
     other_outcome,
     suggested_outcomes,
 )
-from smachac.checks.outcomes.condition_outcomes import unknown_endings
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Certainty, Repair

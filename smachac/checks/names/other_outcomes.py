@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from smachac.analysis.control_flow import unknown_outcomes
-from smachac.checks import notation
-from smachac.checks.help_text import ends_of
+from smachac.checks.findings import notation
+from smachac.checks.findings.help_text import ends_of
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes

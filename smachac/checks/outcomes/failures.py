@@ -10,9 +10,8 @@ from smachac.analysis.control_flow import MOST_STEPS
 from smachac.analysis.failure_paths import starts_failure
 from smachac.analysis.outcome_rules import Combination, SoundConcurrence, Space, UndecidedError
 from smachac.analysis.possible_outcomes import Judged
-from smachac.checks import notation
-from smachac.checks.concurrence.combinations import written
-from smachac.checks.help_text import calls, other_place, own_name
+from smachac.checks.findings import notation
+from smachac.checks.findings.help_text import calls, in_conditions, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity, ended, entered
 from smachac.diagnostics.source import Span
@@ -238,8 +237,8 @@ def _masked_finding(
     step = next((step for step in node.transitions if step.outcome == outcome), None)
     yield Finding(
         span=span,
-        message=f"`{node.name}` ends with `{outcome}` although `{child}` failed: {written(shown)}"
-        f"{also}",
+        message=f"`{node.name}` ends with `{outcome}` although `{child}` failed:"
+        f" {in_conditions(shown)}{also}",
         arguments=(
             own_name(node, span),
             outcome,

@@ -8,8 +8,8 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from smachac.checks.help_text import calls, other_place
-from smachac.checks.types.value_places import place_of_part
+from smachac.checks.findings.help_text import calls, other_place
+from smachac.checks.findings.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding
 from smachac.diagnostics.source import Span
 from smachac.ir.leaf import default_outcome, functions, variable, variable_of
@@ -105,9 +105,9 @@ def _compared(node: ast.expr, names: frozenset[str]) -> list[_Range]:
     sides = [node.left, *node.comparators]
     for left, sort, right in zip(sides, node.ops, sides[1:], strict=False):
         key, number = _key(left, names), _number(right)
-        turned = False
+        inverted = False
         if key is None or number is None:
-            key, number, turned = _key(right, names), _number(left), True
+            key, number, inverted = _key(right, names), _number(left), True
         if key is None or number is None:
             return []
         match sort:
@@ -115,7 +115,7 @@ def _compared(node: ast.expr, names: frozenset[str]) -> list[_Range]:
                 found.append(_Range(key, number, True, number, True))
             case ast.Gt() | ast.GtE() | ast.Lt() | ast.LtE():
                 closed = isinstance(sort, ast.GtE | ast.LtE)
-                above = isinstance(sort, ast.Gt | ast.GtE) != turned
+                above = isinstance(sort, ast.Gt | ast.GtE) != inverted
                 found.append(
                     _Range(key, least=number, least_closed=closed)
                     if above

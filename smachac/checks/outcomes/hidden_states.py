@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import Linear, has_no_interface, unhandled
-from smachac.checks.help_text import calls, did_you_mean
+from smachac.checks.findings.help_text import calls, did_you_mean
 from smachac.diagnostics.diagnostic import Finding
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, respelt
@@ -45,7 +45,7 @@ def hidden_groups(context: Context) -> Iterator[Hidden | Finding]:
             yield _wrong_connector(path, container)
             continue
         if missed is None:
-            from smachac.checks.properties.failed_properties import missed_states
+            from smachac.analysis.failed_properties import missed_states
 
             missed = missed_states(context)
         before = _before(whole, frozenset(child.name for child in hidden))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from smachac.checks.help_text import calls, other_place
-from smachac.checks.type_words import placeholder
+from smachac.checks.findings.help_text import calls, other_place
+from smachac.checks.findings.type_words import placeholder
 from smachac.diagnostics.diagnostic import Finding
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.wording import listed

@@ -16,11 +16,11 @@ from smachac.analysis.control_flow import (
     unhandled_in,
     unknown_outcomes,
 )
-from smachac.checks import notation
-from smachac.checks.concurrence.inverted_rules import Inverted, inverted_rules, transposed_rules
-from smachac.checks.edits import likely, with_field
-from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
-from smachac.checks.outcomes.condition_outcomes import suggested_default
+from smachac.checks.findings import notation
+from smachac.checks.findings.condition_outcomes import suggested_default
+from smachac.checks.findings.edits import likely, with_field
+from smachac.checks.findings.help_text import calls, did_you_mean, other_place, own_name
+from smachac.checks.findings.inverted_rules import Inverted, inverted_rules, transposed_rules
 from smachac.checks.outcomes.iterator_endings import SuggestedEnding, endings, suggested_ending
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity

@@ -6,15 +6,15 @@ from collections.abc import Iterator
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import Linear, children_names, has_no_interface, unhandled_in
-from smachac.checks import notation
-from smachac.checks.edits import likely
-from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
+from smachac.analysis.iterator_stops import undeclared_stops
+from smachac.checks.findings import notation
+from smachac.checks.findings.edits import likely
+from smachac.checks.findings.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.outcomes.hidden_conditions import hidden_conditions
 from smachac.checks.outcomes.hidden_states import LedPast, hidden_groups
 from smachac.checks.outcomes.iterator_endings import endings
 from smachac.checks.outcomes.needed_variables import outcomes_without_variable
 from smachac.checks.rule import rule
-from smachac.checks.timing.iterator_stops import undeclared_stops
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.spelling import guesser

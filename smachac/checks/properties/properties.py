@@ -7,12 +7,12 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from smachac.analysis.context import Context
+from smachac.analysis.failed_properties import failures
 from smachac.analysis.outcome_rules import has_dead_rule
-from smachac.checks.edits import likely
-from smachac.checks.help_text import other_place
+from smachac.analysis.property_turns import Turn
+from smachac.checks.findings.edits import likely
+from smachac.checks.findings.help_text import other_place
 from smachac.checks.properties.event_names import name_fault
-from smachac.checks.properties.failed_properties import failures
-from smachac.checks.properties.property_turns import Turn
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.repair import Edit, Repair

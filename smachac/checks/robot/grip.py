@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.checks.help_text import calls, names_apart, other_place
+from smachac.checks.findings.help_text import calls, names_apart, other_place
 from smachac.checks.robot.gripper_effects import (
     MOST_VISITS,
     Effect,

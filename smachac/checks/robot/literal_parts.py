@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
-from smachac.checks.types.value_places import WHOLE, Part
+from smachac.checks.findings.value_places import WHOLE, Part
 from smachac.ir.nodes import Data, Leaf, Struct
 
 

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 from smachac.analysis.context import Context
 from smachac.analysis.type_inference import TypeFlow
-from smachac.checks.help_text import calls, other_place
+from smachac.checks.findings.help_text import calls, other_place
+from smachac.checks.findings.literals import reader
+from smachac.checks.findings.value_places import place_of_part
 from smachac.checks.robot.literal_parts import names_in, part_named, role_of
-from smachac.checks.types.literals import reader
-from smachac.checks.types.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Related
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.nodes import Leaf

@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import Read, last_writers
 from smachac.analysis.uses import place_of
-from smachac.checks.help_text import calls, other_place
+from smachac.checks.findings.help_text import calls, other_place
+from smachac.checks.findings.literals import literal_finding
 from smachac.checks.robot.literal_parts import as_float, frame_of, role_of
 from smachac.checks.rule import rule
-from smachac.checks.types.literals import literal_finding
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span
 from smachac.ir.graph import START

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.checks.help_text import calls, other_place
+from smachac.checks.findings.help_text import calls, other_place
 from smachac.checks.robot.gripper_effects import MOST_VISITS, comes_to_body, grip_of, keeps_gripper
 from smachac.checks.robot.simulated_world import is_simulated
 from smachac.checks.rule import rule

@@ -9,9 +9,11 @@ from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import reaching_flows
 from smachac.analysis.type_inference import TypeFlow
 from smachac.analysis.type_lattice import inside, present
-from smachac.checks.code.function_results import wrong_units
-from smachac.checks.code.operand_findings import mixed_units
-from smachac.checks.help_text import did_you_mean, other_place
+from smachac.checks.findings.clash_findings import clash_findings
+from smachac.checks.findings.help_text import did_you_mean, other_place
+from smachac.checks.findings.literals import literal_finding, reader
+from smachac.checks.findings.number_help import decimal_commas
+from smachac.checks.findings.value_places import Part
 from smachac.checks.robot.joint_limits import _angles, joint_faults, within_limits
 from smachac.checks.robot.literal_parts import (
     as_float,
@@ -22,11 +24,8 @@ from smachac.checks.robot.literal_parts import (
     role_of,
 )
 from smachac.checks.robot.simulated_world import is_simulated, loaded_too_late, uses_simulation
+from smachac.checks.robot.units import mixed_units, wrong_units
 from smachac.checks.rule import rule
-from smachac.checks.types.clash_findings import clash_findings
-from smachac.checks.types.literals import literal_finding, reader
-from smachac.checks.types.number_help import decimal_commas
-from smachac.checks.types.value_places import Part
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import MOST_LISTED, listed

@@ -7,9 +7,9 @@ from typing import Literal
 
 from smachac.analysis.context import Context
 from smachac.analysis.type_inference import Cell, TypeFlow
-from smachac.checks.help_text import other_place
-from smachac.checks.types.literals import literal_finding, reader
-from smachac.checks.types.value_places import Part
+from smachac.checks.findings.help_text import other_place
+from smachac.checks.findings.literals import literal_finding, reader
+from smachac.checks.findings.value_places import Part
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.records import replace
 

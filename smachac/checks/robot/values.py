@@ -10,14 +10,14 @@ from smachac.analysis.reaching_values import reaching_flows
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
 from smachac.analysis.units import FULL_TURN, conversion, other_units
-from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
+from smachac.checks.findings.help_text import calls, did_you_mean, other_place, own_name
+from smachac.checks.findings.literals import literal_finding
+from smachac.checks.findings.value_places import Part, parts_of, place_of_part, steps_to_number
 from smachac.checks.robot.joint_limits import joint_faults
 from smachac.checks.robot.literal_parts import moves_arm, names_in, part_named, role_of
 from smachac.checks.robot.misnamed_bodies import misnamed_body
 from smachac.checks.robot.simulated_world import is_simulated, loaded_too_late, uses_simulation
 from smachac.checks.rule import rule
-from smachac.checks.types.literals import literal_finding
-from smachac.checks.types.value_places import Part, parts_of, place_of_part, steps_to_number
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser
@@ -472,11 +472,11 @@ def doubtful_unit(context: Context) -> Iterator[Finding]:
     for type_ in types.values():
         yield from _doubtful_defaults(type_)
     if context.expression_faults:
-        from smachac.checks.code.operand_findings import doubtful_comparisons
+        from smachac.checks.robot.units import doubtful_comparisons
 
         yield from doubtful_comparisons(context)
     if context.leaves_with_class:
-        from smachac.checks.classes.class_value_types import wrong_operations
+        from smachac.checks.findings.class_value_types import wrong_operations
 
         yield from wrong_operations(context, "doubt")
 

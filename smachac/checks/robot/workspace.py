@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from smachac.analysis.context import Context
 from smachac.analysis.type_inference import Cell, TypeFlow, Types
-from smachac.checks.types.literals import literal_finding, reader
+from smachac.checks.findings.literals import literal_finding, reader
 from smachac.diagnostics.diagnostic import Finding, Problem, Report, Severity, problem
 from smachac.ir.leaf import key_names, variable_of
 from smachac.ir.nodes import Data, Leaf, Machine, Node, is_number

@@ -10,17 +10,19 @@ from typing import NamedTuple, TypeAlias
 from smachac.analysis.code_slots import code_slots
 from smachac.analysis.context import Context
 from smachac.analysis.message_code import MOST_CODE, leaf_definitions, message_code, nested_messages
-from smachac.analysis.type_inference import TypeFlow
-from smachac.analysis.type_lattice import fits, present
-from smachac.checks.edits import likely, listing, with_input, with_remapping
-from smachac.checks.help_text import calls, did_you_mean
-from smachac.checks.ros.message_calls import CHECK_FIELDS, call_faults, message_calls
-from smachac.checks.ros.message_keys import (
+from smachac.analysis.message_keys import (
     TYPE_KEY,
     lacks_type_key,
     remapped_field,
     suggested_type_key,
 )
+from smachac.analysis.type_inference import TypeFlow
+from smachac.analysis.type_lattice import fits, present
+from smachac.checks.findings.edits import likely, listing, with_input, with_remapping
+from smachac.checks.findings.help_text import calls, did_you_mean
+from smachac.checks.findings.literals import literal_finding
+from smachac.checks.findings.value_places import Part, place_of_part
+from smachac.checks.ros.message_calls import CHECK_FIELDS, call_faults, message_calls
 from smachac.checks.ros.message_reads import (
     code_places,
     described,
@@ -51,8 +53,6 @@ from smachac.checks.ros.message_values import (
 )
 from smachac.checks.ros.messages_in_classes import faults_in_classes
 from smachac.checks.rule import rule
-from smachac.checks.types.literals import literal_finding
-from smachac.checks.types.value_places import Part, place_of_part
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.wording import both, listed

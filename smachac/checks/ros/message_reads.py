@@ -20,7 +20,7 @@ from smachac.analysis.message_code import (
     nested_messages,
     owners,
 )
-from smachac.checks.help_text import calls, did_you_mean, other_place
+from smachac.checks.findings.help_text import calls, did_you_mean, other_place
 from smachac.checks.ros.message_values import an_example, constants_for, named_constants
 from smachac.diagnostics.diagnostic import Finding, Related
 from smachac.diagnostics.meanings import by_words

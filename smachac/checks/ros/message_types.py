@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from smachac.analysis.message_code import MOST_CODE
-from smachac.checks.help_text import calls, did_you_mean
+from smachac.checks.findings.help_text import calls, did_you_mean
 from smachac.diagnostics.diagnostic import Finding
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser

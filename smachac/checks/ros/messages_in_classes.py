@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from smachac.analysis.context import Context
 from smachac.analysis.message_code import Content, MessageCode
-from smachac.checks.classes.types_with_code import leaves_by_type, used_here
+from smachac.checks.findings.types_with_code import leaves_by_type, used_here
 from smachac.checks.ros.message_reads import (
     unknown_field_finding,
     wrong_comparisons,

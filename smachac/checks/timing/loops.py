@@ -21,8 +21,8 @@ from smachac.analysis.control_flow import (
     way,
 )
 from smachac.analysis.error_recovery import undeclared_writes
-from smachac.checks import notation
-from smachac.checks.help_text import calls, own_name
+from smachac.checks.findings import notation
+from smachac.checks.findings.help_text import calls, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity
 from smachac.diagnostics.wording import listed

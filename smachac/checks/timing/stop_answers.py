@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from smachac.analysis.control_flow import MOST_STEPS
 from smachac.analysis.stop_paths import Resumed
-from smachac.checks import notation
-from smachac.checks.help_text import other_place
+from smachac.checks.findings import notation
+from smachac.checks.findings.help_text import other_place
 from smachac.diagnostics.diagnostic import PathStep, Related, ended, entered
 from smachac.ir.nodes import Container
 from smachac.ir.outcome_names import PREEMPTED

@@ -14,8 +14,8 @@ from smachac.analysis.stop_paths import (
     stopped_space,
     task_successes,
 )
-from smachac.checks import notation
-from smachac.checks.help_text import calls, other_place, own_name
+from smachac.checks.findings import notation
+from smachac.checks.findings.help_text import calls, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.checks.timing.stop_answers import answered_here, led_out, way_out, witness
 from smachac.diagnostics.diagnostic import Finding, Severity

@@ -8,19 +8,14 @@ from math import ceil, isfinite
 
 from smachac.analysis.context import Context
 from smachac.analysis.durations import Ends, ends_of, shortest_ends, time_limit, time_limit_span
+from smachac.analysis.iterator_stops import inverted_renames, undeclared_stops
 from smachac.analysis.possible_outcomes import Endings
 from smachac.analysis.stop_paths import branch_around, stoppable_branches
-from smachac.checks import notation
-from smachac.checks.help_text import calls, other_place, own_name
+from smachac.analysis.watched_branches import Watched, is_limited, time_limits, watched_branches
+from smachac.checks.findings import notation
+from smachac.checks.findings.help_text import calls, other_place, own_name
 from smachac.checks.rule import rule
-from smachac.checks.timing.iterator_stops import turned_renames, undeclared_stops
 from smachac.checks.timing.stop_answers import answered_here, way_out, witness
-from smachac.checks.timing.watched_branches import (
-    Watched,
-    is_limited,
-    time_limits,
-    watched_branches,
-)
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
@@ -357,8 +352,8 @@ def no_way_to_stop(context: Context) -> Iterator[Finding]:
     """
     for path, container in context.containers:
         lost = undeclared_stops(container) if isinstance(container, nodes.Iterator) else []
-        turned = {result for _, result in turned_renames(container)} if lost else {}
-        lost = [text for text in lost if text not in turned]  # SM403 reports these
+        inverted = {result for _, result in inverted_renames(container)} if lost else {}
+        lost = [text for text in lost if text not in inverted]  # SM403 reports these
         if not lost:
             continue
         name, counted_on = container.name, PREEMPTED in outcome_names(container)

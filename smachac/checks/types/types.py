@@ -8,12 +8,12 @@ from smachac.analysis.context import Context
 from smachac.analysis.data_types import type_of_data
 from smachac.analysis.type_inference import Cell, Clash
 from smachac.analysis.type_lattice import misfit, present, widened
-from smachac.checks.edits import likely
-from smachac.checks.help_text import calls, did_you_mean, other_place
+from smachac.checks.findings.edits import likely
+from smachac.checks.findings.help_text import calls, did_you_mean, other_place
+from smachac.checks.findings.type_origins import cell_owner, written
+from smachac.checks.findings.type_words import in_words
+from smachac.checks.findings.value_places import place_of_part
 from smachac.checks.rule import rule
-from smachac.checks.type_words import in_words
-from smachac.checks.types.type_origins import cell_owner, written
-from smachac.checks.types.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span
@@ -79,14 +79,14 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
     """
     clashes = [clash for clash in context.clashes["type"] if not _is_function(clash)]
     if clashes:
-        from smachac.checks.types.clash_findings import clash_findings
+        from smachac.checks.findings.clash_findings import clash_findings
 
         yield from clash_findings(clashes, context.machine.aliases)
     yield from _lists_for_items(context)
     yield from _without_items(context)
     yield from _wrong_steps(context)
     if context.leaves_with_class:
-        from smachac.checks.classes.class_value_types import wrong_loops, wrong_writes
+        from smachac.checks.findings.class_value_types import wrong_loops, wrong_writes
 
         yield from wrong_writes(context)
         yield from wrong_loops(context)
@@ -236,7 +236,7 @@ def _wrong_defaults(type_: StateType) -> Iterator[Finding]:
             continue
         help = f"write a default that fits `{held.type}`, or correct the type"
         if found.given.name == "literal" and present(found.wanted).name in ("int", "float"):
-            from smachac.checks.types.number_help import suggested_number
+            from smachac.checks.findings.number_help import suggested_number
 
             help = suggested_number(str(found.given.args[0]), present(found.wanted)) or help
         if isinstance(data, str) and data.lower() in ("none", "nil"):

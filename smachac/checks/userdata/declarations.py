@@ -14,10 +14,11 @@ from smachac.analysis.error_recovery import undeclared_reads
 from smachac.analysis.function_slots import function_reads
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import container_name
+from smachac.analysis.used_keys import sees_everything, used_in
 from smachac.analysis.uses import place_of
-from smachac.checks import notation
-from smachac.checks.help_text import CALLED_HERE, calls, did_you_mean, other_place
-from smachac.checks.outcomes.condition_outcomes import suggested_default, unknown_endings
+from smachac.checks.findings import notation
+from smachac.checks.findings.condition_outcomes import suggested_default, unknown_endings
+from smachac.checks.findings.help_text import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.userdata.unused_keys import (
     Unwritten,
@@ -27,7 +28,6 @@ from smachac.checks.userdata.unused_keys import (
     unwritten_finding,
     unwritten_keys,
 )
-from smachac.checks.userdata.used_keys import sees_everything, used_in
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import guesser, is_plain, respelt

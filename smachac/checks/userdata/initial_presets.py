@@ -9,9 +9,9 @@ from itertools import groupby
 from smachac.analysis.context import Context
 from smachac.analysis.type_inference import Types
 from smachac.analysis.unset_reads import Missing, Reader, container_name, reader_at
-from smachac.checks import notation
-from smachac.checks.help_text import calls, other_place
-from smachac.checks.type_words import placeholder
+from smachac.checks.findings import notation
+from smachac.checks.findings.help_text import calls, other_place
+from smachac.checks.findings.type_words import placeholder
 from smachac.diagnostics.diagnostic import Finding
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from smachac.analysis.context import Context
 from smachac.analysis.secret_values import secret_values
-from smachac.checks.help_text import calls
+from smachac.checks.findings.help_text import calls
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span

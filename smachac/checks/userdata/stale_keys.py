@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from smachac.analysis.context import Context
 from smachac.analysis.stale_counters import Kind, StaleCounter, stale_counters
-from smachac.checks.help_text import calls, other_place
+from smachac.checks.findings.help_text import calls, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity, ended, entered
 from smachac.diagnostics.wording import listed

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from smachac.analysis.context import Context
 from smachac.analysis.liveness import DeadStore, dead_stores
 from smachac.analysis.uses import place_of
-from smachac.checks import notation
-from smachac.checks.help_text import calls, other_place
+from smachac.checks.findings import notation
+from smachac.checks.findings.help_text import calls, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.wording import listed

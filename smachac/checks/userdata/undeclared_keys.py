@@ -10,17 +10,17 @@ from smachac.analysis.code_slots import CodeSlot, swapped, undeclared_slot_reads
 from smachac.analysis.context import Context
 from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes
 from smachac.analysis.function_slots import named_functions
-from smachac.checks.classes.types_with_code import first_of_each, leaves_by_type, used_here
-from smachac.checks.classes.undeclared_accesses import (
+from smachac.checks.findings.candidate_keys import keys_around
+from smachac.checks.findings.edits import listing, with_input, with_key_list, with_output
+from smachac.checks.findings.help_text import calls, did_you_mean, other_place
+from smachac.checks.findings.types_with_code import first_of_each, leaves_by_type, used_here
+from smachac.checks.findings.value_places import place_of_part
+from smachac.checks.rule import rule
+from smachac.checks.userdata.undeclared_accesses import (
     DICTIONARY_METHODS,
     dropped_writes,
     unknown_reads,
 )
-from smachac.checks.edits import listing, with_input, with_key_list, with_output
-from smachac.checks.help_text import calls, did_you_mean, other_place
-from smachac.checks.rule import rule
-from smachac.checks.types.value_places import place_of_part
-from smachac.checks.userdata.candidate_keys import keys_around
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, respelt

@@ -12,10 +12,10 @@ from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import is_unknown
 from smachac.analysis.unset_reads import Missing, Witness, container_name, reader_at
-from smachac.checks import notation
-from smachac.checks.edits import likely, listing, with_field, with_input, with_remapping
-from smachac.checks.help_text import added_remapping, calls, other_place
-from smachac.checks.userdata.candidate_keys import may_be, unread_output
+from smachac.checks.findings import notation
+from smachac.checks.findings.candidate_keys import may_be, unread_output
+from smachac.checks.findings.edits import likely, listing, with_field, with_input, with_remapping
+from smachac.checks.findings.help_text import added_remapping, calls, other_place
 from smachac.checks.userdata.initial_presets import counts, initial_value
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser, words_of

@@ -13,7 +13,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.error_recovery import undeclared_writes
 from smachac.analysis.message_code import leaf_definitions
 from smachac.analysis.uses import place_of
-from smachac.checks.help_text import calls
+from smachac.checks.findings.help_text import calls
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import both, listed

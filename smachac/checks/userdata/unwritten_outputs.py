@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 from smachac.analysis.context import Context
 from smachac.analysis.type_lattice import is_unknown, present
-from smachac.checks import notation
-from smachac.checks.classes.types_with_code import own_types, used_here
-from smachac.checks.classes.undeclared_accesses import lone_output
-from smachac.checks.help_text import other_place
+from smachac.checks.findings import notation
+from smachac.checks.findings.candidate_keys import SCALARS
+from smachac.checks.findings.help_text import other_place
+from smachac.checks.findings.types_with_code import own_types, used_here
 from smachac.checks.rule import rule
-from smachac.checks.userdata.candidate_keys import SCALARS
+from smachac.checks.userdata.undeclared_accesses import lone_output
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser, words_of

@@ -9,12 +9,12 @@ from functools import cache
 from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.error_recovery import is_around_open, lacking_inputs, unknown_remaps
+from smachac.analysis.message_keys import remapped_fields
 from smachac.analysis.type_inference import Types
 from smachac.analysis.unset_reads import Missing, Searches, container_name, provided_keys, reader_at
-from smachac.checks import notation
-from smachac.checks.edits import likely, listing, with_input, with_output
-from smachac.checks.help_text import calls, did_you_mean, other_place
-from smachac.checks.ros.message_keys import remapped_fields
+from smachac.checks.findings import notation
+from smachac.checks.findings.edits import likely, listing, with_input, with_output
+from smachac.checks.findings.help_text import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.userdata.initial_presets import missing_together, together_finding
 from smachac.checks.userdata.unset_read_findings import fitting_keys, unset_read
@@ -232,30 +232,30 @@ def _unknown_remaps_of(path: str, node: Node) -> Iterator[Finding]:
     own = list(dict.fromkeys(key.name for key in (*node.inputs, *node.outputs)))
     unknown = unknown_remaps(node)
     guess = guesser(sorted({*own} - {remap.key for remap in node.remaps}))
-    turned = [
+    inverted = [
         remap for remap in unknown if remap.to in own and guess.unique_match(remap.key) is None
     ]
     for remap in unknown:
         meant, certain = guess(remap.key), guess.unique_match(remap.key)
         known = f"use one of its keys: {listed(own)}" if own else "remove it: the state has no keys"
-        if remap in turned:
-            if remap is not turned[0]:
+        if remap in inverted:
+            if remap is not inverted[0]:
                 continue
-            right = notation.entries(node, ((remap.to, remap.key) for remap in turned))
-            right = f"{{{right}}}" if len(turned) > 1 else right
+            right = notation.entries(node, ((remap.to, remap.key) for remap in inverted))
+            right = f"{{{right}}}" if len(inverted) > 1 else right
             known = f"the key of the state comes first: write `{right}`"
         yield Finding(
             span=remap.span,
             message=f"`{remap.key}` in the remapping of `{node.name}` is not one of its userdata"
             " keys",
             arguments=(remap.key, remap.to),
-            help=known if remap in turned else did_you_mean(meant) or known,
+            help=known if remap in inverted else did_you_mean(meant) or known,
             effect=_ignored(
-                node, *((remap.to, remap.key) if remap in turned else (meant, remap.to))
+                node, *((remap.to, remap.key) if remap in inverted else (meant, remap.to))
             ),
             related=calls(node, remap.span),
             node=path,
-            edits=() if remap in turned else respelt(Word(remap.key, remap.span), certain),
+            edits=() if remap in inverted else respelt(Word(remap.key, remap.span), certain),
             repairs=tuple(_other_keys(remap, guess.names) if meant is None else ()),
         )
 

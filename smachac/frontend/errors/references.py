@@ -255,7 +255,7 @@ def bad_sub_script(
     Severity.ERROR,
     effect="the value is unknown, so no program is generated",
 )
-def unresolved_look_up(word: Word, scope: Iterable[str], turned: str | None = None) -> Finding:
+def unresolved_look_up(word: Word, scope: Iterable[str], inverted: str | None = None) -> Finding:
     """A look-up names a param that is not in scope.
 
     The value is unknown. In the generated program the look-up would be a wrong constant or invalid
@@ -289,8 +289,8 @@ def unresolved_look_up(word: Word, scope: Iterable[str], turned: str | None = No
     if names:
         others = f"{help}; in scope are {listed(names)}"
         help = did_you_mean(word.text, names) or others
-    if turned:
-        help = f"write `{word.text}: {turned}` in `params`: the name of the param comes first"
+    if inverted:
+        help = f"write `{word.text}: {inverted}` in `params`: the name of the param comes first"
     return Finding(
         span=word.span,
         message=f"the param `{word.text}` is not in scope here",
@@ -319,19 +319,19 @@ def look_up_of_call(
     script: Word,
     state: str,
     idle: Sequence[Word],
-    turned: str | None,
+    inverted: str | None,
     places: Sequence[Word],
 ) -> Diagnostic:
     """SM015 for a look-up in a sub-script, at its call: `script` is its name and the place of the
-    call by `state`, `idle` are the params of the call that the sub-script does not read, `turned`
+    call by `state`, `idle` are the params of the call that the sub-script does not read, `inverted`
     is the one that has the name of the param as its value, `places` are its look-ups."""
     name = word.text
-    near = turned or guesser(word.text for word in idle)(name)
+    near = inverted or guesser(word.text for word in idle)(name)
     wrong = next((word for word in idle if word.text == near), idle[0] if len(idle) == 1 else None)
     help = f"add `{name}: ...` to the `params` of `{state}`, of a container around it,"
     help += " or of the script"
-    if wrong is not None and turned:
-        help = f"write `{name}: {turned}`: the name of the param comes first"
+    if wrong is not None and inverted:
+        help = f"write `{name}: {inverted}`: the name of the param comes first"
     elif wrong is not None:
         other = f"write `{name}:` in place of `{wrong.text}:`, or add it"
         help = f"did you mean `{name}`?" if near else other
@@ -348,7 +348,7 @@ def look_up_of_call(
         help=help,
         effect=f"`{name}` has no value in `{script.text}`, so no program is generated",
         related=(Related(span=word.span, message=f"it reads `{name}` here"),),
-        edits=respelt(wrong, name) if wrong is not None and near and not turned else (),
+        edits=respelt(wrong, name) if wrong is not None and near and not inverted else (),
         repairs=tuple(
             Repair(edits=(*edits,), certainty=Certainty.LIKELY, operator="write another name")
             for pair in renamed
@@ -361,15 +361,6 @@ def look_up_of_call(
 
 MOST_GIVEN = 3
 """The most params of a call for which repairs are proposed."""
-
-
-def short_value(key: Word) -> str | None:
-    """The value after a key of YAML, if it is one word or number."""
-    found = _SHORT_VALUE.match(key.span.source.text, key.span.end)
-    return found[1] if found is not None else None
-
-
-_SHORT_VALUE = re.compile(r":[ ]+([\w.+-]+)[ ]*(?=[,}\n#]|$)")
 
 
 @problem(

@@ -23,7 +23,6 @@ from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser_of, respelt
 from smachac.diagnostics.wording import listed, possible
-from smachac.frontend.schema import VARIABLES
 
 
 class Owner(NamedTuple):
@@ -166,7 +165,7 @@ class Choice(NamedTuple):
     """What can be meant by an unknown name. `meant` is certainly meant, `likely` probably;
     `required` is one of them that is required and missing. `own` are the variables of a state type,
     which come before other names; `free` the names that are not given yet; `proposed` those that
-    only a new check can choose from."""
+    only a new check can choose from. `owners` are the only ones that have a field of the name."""
 
     meant: str | None = None
     likely: str | None = None
@@ -174,6 +173,7 @@ class Choice(NamedTuple):
     own: Collection[str] = ()
     free: Collection[str] = ()
     proposed: Sequence[str] = ()
+    owners: Collection[str] = ()
 
 
 ANY_NAME = Choice()
@@ -231,7 +231,7 @@ def unknown_variable(
         if word.text in ELSEWHERE and not sure:
             effect, foreign = ELSEWHERE[word.text]
         if not (sure or foreign) and owner.part == "variable":
-            foreign = _misplaced(word.text)
+            foreign = _misplaced(word.text, choice.owners)
         listed = f"use one of its {owner.part}s{possible(names, choice.free)}"
         others = listed if names else f"remove it: {owner.text} has no other {owner.part}s"
         help = foreign or _variable_help(word.text, sure, names, own) or others
@@ -274,16 +274,15 @@ def one_of_many(word: Word, owner: Owner) -> Diagnostic:
     return unknown_variable(word, owner, (), help=help)
 
 
-def _misplaced(word: str) -> str | None:
+def _misplaced(word: str, owners: Collection[str]) -> str | None:
     """The help for a variable of the language that only other owners have."""
-    row = VARIABLES.get(word)
-    if row is None or not row.owners or "state" in row.owners:
+    if not owners:
         return None
-    if row.owners == {"base"}:
+    names = [f"`{owner}`" for owner in sorted(owners) if owner != "base"]
+    if not names:
         return f"write it at the top of the script: no state has `{word}`"
-    owners = [f"`{owner}`" for owner in sorted(row.owners - {"base"})]
-    owners += ["the script itself"] if "base" in row.owners else []
-    return f"remove it here, or move it: only {' and '.join(owners)} can have `{word}`"
+    names += ["the script itself"] if "base" in owners else []
+    return f"remove it here, or move it: only {' and '.join(names)} can have `{word}`"
 
 
 def _variable_help(word: str, sure: str | None, names: list[str], own: list[str]) -> str | None:

@@ -154,17 +154,36 @@ def _without_places(definition: Definition) -> Definition:
     return replace(definition, messages=tuple(messages), span=NOWHERE)
 
 
+def with_values(base: State) -> list[State]:
+    """The states of a script that have values, which can name types of ROS: variables or
+    userdata."""
+    found: list[State] = []
+    todo = [base]
+    while todo:
+        state = todo.pop()
+        if state.states:
+            todo += state.states
+        if state.variables or state.userdata:
+            found.append(state)
+    return found
+
+
 def definitions_of(
-    base: State, classes: Iterable[ClassFacts], library: Library, report: Report
+    base: State,
+    states: Sequence[State],
+    classes: Iterable[ClassFacts],
+    library: Library,
+    report: Report,
 ) -> Definitions:
     """The definitions of the types that the states of a script and the classes of their types name,
-    and those of the messages in their fields. A file that is not valid is reported."""
+    and those of the messages in their fields. `states`: see `with_values`. A file that is not valid
+    is reported."""
     found: dict[tuple[DefinitionKind, str], tuple[Definition, ...]] = {}
-    todo: list[tuple[DefinitionKind, str]] = list(_named_types(base))
+    todo: list[tuple[DefinitionKind, str]] = list(_named_types(states))
     for facts in classes:
         for kind, text, _ in _readings(facts):
             todo.append((kind, text))
-    for text, name in _called_messages(base, library).items():
+    for text, name in _called_messages(base, states, library).items():
         found["msg", text] = find_definitions(name, "msg", library, report)
         for definition in found["msg", text]:
             todo.extend(("msg", nested) for nested in _nested(definition))
@@ -196,14 +215,11 @@ def with_fields(
     return fitting[0] if len(fitting) == 1 else None
 
 
-def other_types_of(base: State, found: Definitions, library: Library) -> OtherTypes:
-    """The types that the states of a script can mean in place of those whose messages do not have
-    the fields that they give."""
+def other_types_of(states: Iterable[State], found: Definitions, library: Library) -> OtherTypes:
+    """The types that some states can mean in place of those whose messages do not have the fields
+    that they give."""
     others: dict[tuple[str, tuple[str, ...]], str] = {}
-    todo = [base]
-    while todo:
-        state = todo.pop()
-        todo += state.states
+    for state in states:
         for named in state.variables:
             kind = DEFINITION_KINDS.get(named.role)
             if kind is None:
@@ -226,13 +242,10 @@ def other_types_of(base: State, found: Definitions, library: Library) -> OtherTy
     return others
 
 
-def _named_types(base: State) -> dict[tuple[DefinitionKind, str], None]:
-    """The kinds and names of the types of ROS that the states of a script name."""
+def _named_types(states: Iterable[State]) -> dict[tuple[DefinitionKind, str], None]:
+    """The kinds and names of the types of ROS that some states name."""
     found: dict[tuple[DefinitionKind, str], None] = {}
-    todo = [base]
-    while todo:
-        state = todo.pop()
-        todo += state.states
+    for state in states:
         for held in state.variables:
             kind = DEFINITION_KINDS.get(held.role)
             if kind is not None:
@@ -244,15 +257,12 @@ def _named_types(base: State) -> dict[tuple[DefinitionKind, str], None]:
     return found
 
 
-def _called_messages(base: State, library: Library) -> dict[str, str]:
+def _called_messages(base: State, states: Sequence[State], library: Library) -> dict[str, str]:
     """The names of the messages whose classes the code of a script calls, by the words of the call:
     `std_msgs.msg.Bool(data=True)`, or `Bool(data=True)`, which a program imports from the only
     common package that has it, unless a type of the script or a base of the user has its name."""
     words: dict[str, None] = {}
-    todo = [base]
-    while todo:
-        state = todo.pop()
-        todo += state.states
+    for state in states:
         data = [held.value.data for held in state.variables]
         data += [preset.value.data for preset in state.userdata]
         codes = [value.text if isinstance(value, Expression) else value for value in data]
@@ -261,7 +271,7 @@ def _called_messages(base: State, library: Library) -> dict[str, str]:
     found = {word: word for word in words if "." in word}
     code = base.type.code.get("python", f"{base.type.name}.tpl.py")
     if len(found) < len(words) and library.own_template(code) is None:
-        named = {re.split(r"[/.]", text)[-1] for _, text in _named_types(base)}
+        named = {re.split(r"[/.]", text)[-1] for _, text in _named_types(states)}
         packages = packages_by_message(library.ros)
         for word in words:
             if word not in named and len(packages.get(word, ())) == 1:
@@ -283,16 +293,16 @@ def _readings(facts: ClassFacts) -> Iterator[tuple[DefinitionKind, str, str]]:
 
 
 def missing_definitions_of(
-    base: State, classes: Iterable[ClassFacts], found: Definitions, library: Library
+    states: Iterable[State], classes: Iterable[ClassFacts], found: Definitions, library: Library
 ) -> MissingDefinitions:
-    """The types in the states of a script, or in the classes of their types, whose package has
+    """The types in some states, or in the classes of their types, whose package has
     types of their kind, but not these, or types of these names, but of another kind.
 
     Types that ROS 1 makes of an action, such as `TestActionGoal`, and those with a definition in
     the format of the OMG (`.idl`) are not missing.
     """
     missing: dict[tuple[DefinitionKind, str], Missing] = {}
-    for kind, text in _named_types(base):
+    for kind, text in _named_types(states):
         word = type_name(text, kind)
         if (kind, text) in found or word is None:
             continue

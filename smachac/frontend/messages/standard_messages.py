@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from smachac.pysource.ros_names import Ros
+from smachac.pysource.modules.ros_names import Ros
 
 FOLDER = Path(__file__).parent
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Literal, TypeAlias, TypeVar
@@ -199,7 +200,9 @@ class _Reader:
     def bad_urdf(self, word: Word, name: str, source: Source, error: XmlError) -> None:
         """Report the mistake in a URDF or xacro file, or in a file that it includes."""
         if isinstance(error, XacroError) and error.file.absolute() != Path(source.name).absolute():
-            source = Source(str(error.file), error.text)
+            folder = Path(source.name).parent
+            inside = os.path.relpath(error.file.absolute(), folder.absolute())
+            source = Source(os.path.normpath(folder / inside), error.text)
         span = Span(source, *error.place)
         message = f"the robot file `{name}` has a mistake: {error.message}"
         self.wrong(word, message, error.help, ("urdf", name, error.message), span)

@@ -57,7 +57,7 @@ def lower(script: Script, kept: NodeCache | None = None) -> Machine:
     """The machine that a script describes. `kept` are the nodes of the machine before a change,
     which become those of this one: a state that is the same object has the same node."""
     base = script.base
-    nodes = _Nodes(kept or {}, {})
+    nodes = _Nodes(kept, {})
     root = _container(base, "StateMachine", nodes)
     assert isinstance(root, StateMachine)
     if kept is not None:
@@ -277,9 +277,10 @@ def _without_optional(child: Node, state: State, outcomes: frozenset[str]) -> No
 
 
 class _Nodes(NamedTuple):
-    """The kept nodes of the machine before a change, and those of this one."""
+    """The nodes of the machine before a change, and those of this one. `old` is None where nobody
+    keeps nodes: then those of leaves are not noted."""
 
-    old: NodeCache
+    old: NodeCache | None
     new: NodeCache
 
 
@@ -331,10 +332,10 @@ def _text(word: Word | None, default: str = "") -> str:
 
 def _node(state: State, kept: _Nodes) -> Node:
     assert state.owner != "base"
-    if state.owner == "state" and not kept.old:
+    if state.owner == "state" and kept.old is None:
         return _with_sugar(_leaf(state), state)
     place = state.name.span, state.via
-    known = kept.old.get(place)
+    known = kept.old.get(place) if kept.old is not None else None
     if known is None or known[0] is not state:
         node = _leaf(state) if state.owner == "state" else _container(state, state.owner, kept)
         known = state, _with_sugar(node, state)

@@ -252,19 +252,15 @@ def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:
     later = {str(entry.key.value): entry.key.span for entry in own.entries}
     inner.later = later
     for entry in own.entries:
-        del later[str(entry.key.value)]
+        later.pop(str(entry.key.value), None)  # a key that is written twice is reported before
         value = fill_in(entry.value, inner, report)
-        if value is not entry.value and _size_beyond(value, MAX_NODES):
+        if value is not entry.value and size_up_to(value, MAX_NODES) > MAX_NODES:
             message = f"the look-ups in this param give it more than {MAX_NODES:,} values"
             help = "use smaller params"
             report.append(too_big(entry.value.span, message, help, arguments=("param",)))
             value = known_wrong(entry.value.span)
         inner[str(entry.key.value)] = value
     return inner
-
-
-def _size_beyond(tree: Tree, limit: int) -> bool:
-    return size_up_to(tree, limit) > limit
 
 
 def size_up_to(tree: Tree, limit: int) -> int:

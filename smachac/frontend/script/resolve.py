@@ -28,6 +28,7 @@ from smachac.frontend.messages.message_definitions import (
     definitions_of,
     missing_definitions_of,
     other_types_of,
+    with_values,
 )
 from smachac.frontend.resolved_script import TIMER, Script, State, Sugar, no_states, unknown_state
 from smachac.frontend.schema import FieldOwner
@@ -72,9 +73,9 @@ from smachac.frontend.script.sub_scripts import (
 )
 from smachac.frontend.script.unknown_templates import (
     Searched,
-    meant_container,
     missing_template,
     missing_template_help,
+    suggested_container,
     unknown_template,
 )
 from smachac.frontend.script.unused import Mark, Uses
@@ -88,6 +89,7 @@ from smachac.frontend.text.fields import (
     wrong,
 )
 from smachac.frontend.text.file_kinds import OTHER_FILES, kind_of_tree
+from smachac.frontend.text.type_names import Aliases
 from smachac.frontend.text.yaml_tree import (
     Entry,
     Map,
@@ -103,9 +105,8 @@ from smachac.frontend.types.type_annotations import (
     read_aliases,
     typed,
 )
-from smachac.frontend.types.type_names import Aliases
 from smachac.ir.nodes import FixedParam, Preset, StateType
-from smachac.pysource.template_sources import TEMPLATE_FILES
+from smachac.pysource.templates.template_sources import TEMPLATE_FILES
 from smachac.records import dataclass, field, replace
 
 TYPE_CHECKING = False  # annotations only: most scripts have no functions or robot
@@ -252,14 +253,15 @@ class _Resolver:
         known = [type_ for type_ in self.types.values() if type_ is not None]
         classes = [type_.class_facts for type_ in known if type_.class_facts is not None]
         library = replace(self.library, definition_names=cache(self.library.definition_names))
-        definitions = definitions_of(base, classes, library, self.report)
+        states = with_values(base)
+        definitions = definitions_of(base, states, classes, library, self.report)
         return Script(
             base=base,
             sources=tuple(self.sources),
             robot=robot,
             definitions=definitions,
-            missing_definitions=missing_definitions_of(base, classes, definitions, library),
-            other_types=other_types_of(base, definitions, library),
+            missing_definitions=missing_definitions_of(states, classes, definitions, library),
+            other_types=other_types_of(states, definitions, library),
             unused=self.uses.unused(self.report),
             properties=self._properties(entries.get("properties"), source),
             params=params_of(entries.get("params")),
@@ -747,7 +749,7 @@ class _Resolver:
             called = [] if role or is_known else self.library.script_names(around.source.name)
             found_in = Searched(searched, names, known, called, other)
             self.not_found(word.text, unknown_template(word, read, found_in, self.other_type))
-            kind = schema.CONTAINERS.get(near or meant_container(word.text, entries))
+            kind = schema.CONTAINERS.get(near or suggested_container(word.text, entries))
             if kind is not None:
                 return schema.CONTAINER_TYPES[kind], kind
             return StateType(name=word.text, open=True), role or nested

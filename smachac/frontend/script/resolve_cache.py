@@ -19,9 +19,9 @@ from smachac.frontend.loader import Library
 from smachac.frontend.resolved_script import State
 from smachac.frontend.script.params import Scope
 from smachac.frontend.script.unused import Uses
+from smachac.frontend.text.type_names import Aliases
 from smachac.frontend.text.yaml_tree import Entry
 from smachac.frontend.types.state_types import find_state_type
-from smachac.frontend.types.type_names import Aliases
 from smachac.ir.nodes import FixedParam, Preset, StateType
 from smachac.records import dataclass, field, replace
 

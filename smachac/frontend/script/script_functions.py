@@ -18,11 +18,11 @@ from smachac.ir.argument_parts import argument_uses, own_names, result_of
 from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.nodes import Data, Expression, StateType, Struct
 from smachac.ir.script_code import script_code
-from smachac.pysource.flow import Flows
-from smachac.pysource.functions import alternatives, is_plain, returns_of
-from smachac.pysource.modules import Module, OwnClass, find_function, template_module
-from smachac.pysource.source import name_span
-from smachac.pysource.template_sources import TEMPLATE_FILES
+from smachac.pysource.flow.flow import Flows
+from smachac.pysource.modules.functions import alternatives, is_plain, returns_of
+from smachac.pysource.modules.modules import Module, OwnClass, find_function, template_module
+from smachac.pysource.modules.source import name_span
+from smachac.pysource.templates.template_sources import TEMPLATE_FILES
 
 _NAME = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)*")
 

@@ -321,7 +321,8 @@ def _known_fields(
                 help = f"`{word.text}` is an outcome: write its transition inside `transitions:`"
             needed = sure if sure is not None and _is_required(sure, owner, type_) else None
             free = [name for name in (*known, *own) if name not in entries]
-            choice = Choice(likely=sure, required=needed, own=own, free=free)
+            owners = schema.special_owners(word.text)
+            choice = Choice(likely=sure, required=needed, own=own, free=free, owners=owners)
             report.append(unknown_variable(word, whose, known, choice, help=help))
             if as_key is not None:
                 read["misplaced_keys"] = (*read.get("misplaced_keys", ()), word.text)

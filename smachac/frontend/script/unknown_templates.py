@@ -109,7 +109,7 @@ def unknown_template(
     return template_not_found(word, folders, known, other, help)
 
 
-def meant_container(word: str, entries: Mapping[str, Entry]) -> str:
+def suggested_container(word: str, entries: Mapping[str, Entry]) -> str:
     """The kind of container that is meant by an unknown type of a state with `states`: the one with
     a name near to it, else the only one that has the fields of the state; empty without one."""
     if "states" not in entries:

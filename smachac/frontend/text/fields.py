@@ -14,7 +14,13 @@ from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span, Word, new_tuple
 from smachac.frontend import schema
-from smachac.frontend.errors.script import Owner, duplicate_key, unknown_variable, wrong_shape
+from smachac.frontend.errors.script import (
+    Choice,
+    Owner,
+    duplicate_key,
+    unknown_variable,
+    wrong_shape,
+)
 from smachac.frontend.text.values import as_value
 from smachac.frontend.text.yaml_tree import (
     Entry,
@@ -325,7 +331,8 @@ def as_outcome(word: Word, tree: Tree, report: Report, *more: str) -> Outcome:
     for entry in as_map(tree, report):
         part = Word(str(entry.key.value), entry.key.span)
         if part.text not in known:
-            report.append(unknown_variable(part, owner, known))
+            choice = Choice(owners=schema.special_owners(part.text))
+            report.append(unknown_variable(part, owner, known, choice))
         parts[part.text] = entry.value
     return Outcome(
         name=word.text,

@@ -19,6 +19,7 @@ from smachac.frontend.text.yaml_tree import (
     ParseAnomalies,
     Scalar,
     Seq,
+    Tree,
     fits_limits,
     parse_piece,
 )
@@ -75,6 +76,21 @@ def parse_in_pieces(
         source.pieces[:] = [Piece(source, 0)]
         return None
     return tree, tuple(pieces)
+
+
+class PieceTrees:
+    """The pieces of the last text of each file, by the name of the file."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, tuple[PieceTree, ...]] = {}
+
+    def parse(self, source: Source) -> Tree | None:
+        """As `parse_in_pieces`: the tree alone. The text becomes the last one of its file."""
+        found = parse_in_pieces(source, self._known.get(source.name, ()))
+        if found is None:
+            return None
+        tree, self._known[source.name] = found
+        return tree
 
 
 def _moved(source: Source, cuts: list[int], before: tuple[PieceTree, ...]) -> Iterator[PieceTree]:

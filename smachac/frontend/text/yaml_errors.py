@@ -135,7 +135,7 @@ def _is_short(stop: _Stop) -> bool:
     """Whether the lines of both places of a syntax error have at most LONGEST_LINE characters."""
     places = [stop.at] if stop.first is None else [stop.at, stop.first]
     starts = [stop.text.rfind("\n", 0, place) + 1 for place in places]
-    return all(_line_end(stop.text, start) - start <= LONGEST_LINE for start in starts)
+    return all(line_end(stop.text, start) - start <= LONGEST_LINE for start in starts)
 
 
 def stopped_at(text: str, error: Any) -> list[int]:
@@ -210,7 +210,7 @@ def lost_of_block_text(text: str, index: int) -> int | None:
     a line that has a key, and without such a text."""
     stop = _Stop(text, "", "", None, 0, index, text[text.rfind("\n", 0, index) + 1 : index])
     start = index - len(stop.before)
-    line = text[start : _line_end(text, index)].rstrip("\r")
+    line = text[start : line_end(text, index)].rstrip("\r")
     if not line.strip() or _KEY_AT_START.match(line) is not None:
         return None
     due: int | None = None
@@ -233,12 +233,12 @@ def _block_text(stop: _Stop) -> _Fault | None:
     for index in (stop.at, *(() if stop.first in (None, stop.at) else (stop.first,))):
         due = lost_of_block_text(stop.text, index)
         start = stop.text.rfind("\n", 0, index) + 1
-        line = stop.text[start : _line_end(stop.text, index)].rstrip()
+        line = stop.text[start : line_end(stop.text, index)].rstrip()
         if due is None or _indent(line) >= due:
             continue
         begin = start + _indent(line)
         message = "this line is indented too little for the text that begins at `|` or `>` above it"
-        return _Fault(message, f"indent it by {_of_spaces(due)}", begin, start + len(line))
+        return _Fault(message, f"indent it by {of_spaces(due)}", begin, start + len(line))
     return None
 
 
@@ -290,7 +290,7 @@ def _quoted_type(found: re.Match[str], stop: _Stop) -> str:
 _OPENING = {"]": "[", "}": "{"}
 
 
-def _open_or_stray(stop: _Stop) -> _Fault | None:
+def _unclosed_or_unopened(stop: _Stop) -> _Fault | None:
     """A bracket or a quote without its counterpart."""
     unclosed = _UNCLOSED.fullmatch(stop.problem)
     if unclosed is not None and stop.first is not None:
@@ -406,7 +406,7 @@ _ENTRIES = re.compile(
 
 def _line_of(stop: _Stop) -> str:
     start = stop.at - len(stop.before)
-    return stop.text[start : _line_end(stop.text, start)].rstrip()
+    return stop.text[start : line_end(stop.text, start)].rstrip()
 
 
 def spaced(joined: str) -> str:
@@ -436,7 +436,7 @@ def _colon_above(stop: _Stop) -> _Fault | None:
     valued, key = _VALUED.fullmatch(written), stop.before.lstrip()
     if valued is not None and len(stop.before) - len(key) > column and not key.startswith("- "):
         message = f"this key is indented more than `{valued[1]}` above it, which has a value"
-        spaces = _of_spaces(column)
+        spaces = of_spaces(column)
         help = f"indent it by {spaces}, like `{valued[1]}`, or remove the value of `{valued[1]}`"
         return _Fault(message, help, stop.at - len(key), stop.at)
     return None
@@ -484,13 +484,13 @@ def _open_items(stop: _Stop) -> list[_Item]:
 
 def _column_below(stop: _Stop, column: int) -> int | None:
     """The column of the next item below one at `column` that is not inside it."""
-    for line in stop.text[_line_end(stop.text, stop.at) :].split("\n"):
+    for line in stop.text[line_end(stop.text, stop.at) :].split("\n"):
         if line.strip() and _indent(line) <= column:
             return _indent(line) if line.lstrip().startswith("- ") else None
     return None
 
 
-def _line_end(text: str, index: int) -> int:
+def line_end(text: str, index: int) -> int:
     end = text.find("\n", index)
     return len(text) if end < 0 else end
 
@@ -508,7 +508,7 @@ def _misindented(stop: _Stop) -> _Fault | None:
     below = _column_below(stop, column)
     first = opened[0]
     if first.column != column == below and _is_alone(stop, first):
-        message = f"`- {first.name}:` is indented by {_of_spaces(first.column)}, the items after it"
+        message = f"`- {first.name}:` is indented by {of_spaces(first.column)}, the items after it"
         end = first.start + len(first.name) + 3
         return _Fault(f"{message} by {column}", _shift(column, name), first.start, end)
     due = min(
@@ -516,7 +516,7 @@ def _misindented(stop: _Stop) -> _Fault | None:
     )
     around = next((item.name for item in opened if item.column < due.column), "")
     owner = f"of `{around}`" if around else "of the script"
-    message = f"`- {name}:` is indented by {_of_spaces(column)}, the items {owner} by {due.column}"
+    message = f"`- {name}:` is indented by {of_spaces(column)}, the items {owner} by {due.column}"
     return _Fault(message, _shift(due.column, due.name), stop.at, stop.at + len(name) + 3)
 
 
@@ -524,10 +524,10 @@ def _shift(column: int, like: str) -> str:
     """The help for an item at a wrong column. `like` is the name of an item at the right one."""
     if not column:
         return f"write it and the lines below it without indentation, like `- {like}:`"
-    return f"indent it and the lines below it by {_of_spaces(column)}, like `- {like}:`"
+    return f"indent it and the lines below it by {of_spaces(column)}, like `- {like}:`"
 
 
-def _of_spaces(number: int) -> str:
+def of_spaces(number: int) -> str:
     return f"{number} space{'s' * (number != 1)}"
 
 
@@ -597,7 +597,7 @@ def _indentation(stop: _Stop) -> _Fault | None:
     like = _key_above(stop)
     help = "indent the keys of one mapping equally"
     if like is not None and _WORD.match(stop.text, stop.at) is not None:
-        help = f"indent it by {_of_spaces(like[0])}, like `{like[1]}`"
+        help = f"indent it by {of_spaces(like[0])}, like `{like[1]}`"
     return _Fault(message, help, stop.at)
 
 
@@ -607,7 +607,7 @@ _STATE = re.compile(r"(-?)([A-Z][\w.-]*):[ \t]*(?:\{.*)?")
 def _lost_dash(stop: _Stop) -> _Fault | None:
     """A state that follows the items of a list and has no `- `."""
     start = stop.at - len(stop.before)
-    line = stop.text[start : _line_end(stop.text, start)].rstrip()
+    line = stop.text[start : line_end(stop.text, start)].rstrip()
     found = _STATE.fullmatch(line.strip())
     if found is None or found[1] or found[2] in VARIABLES:
         return None
@@ -688,7 +688,7 @@ _QUOTED = "put the value in quotes"
 
 def _in_quotes(stop: _Stop, start: int) -> str:
     """The help for a value that needs quotes, with the value up to the end of its line."""
-    line = stop.text[start : _line_end(stop.text, start)].partition(" #")[0].rstrip()
+    line = stop.text[start : line_end(stop.text, start)].partition(" #")[0].rstrip()
     item = re.fullmatch(r"[*+@] *([A-Z]\w*):", line)
     if item is not None:
         return f"write `- {item[1]}:`: an item of a list begins with `- `"
@@ -706,7 +706,7 @@ def _value(stop: _Stop) -> _Fault | None:
     if stop.problem in (_NOT_A_START, *_TABS):
         if here == "\t":
             due = lost_of_block_text(stop.text, stop.at)
-            help = f"{_NO_TAB} {_of_spaces(due)}" if due is not None else _spaces(stop)
+            help = f"{_NO_TAB} {of_spaces(due)}" if due is not None else _spaces(stop)
             return _Fault("YAML does not allow a tab in the indentation", help, stop.at)
         message = f"a value cannot begin with `{here}`"
         return _Fault(message, _in_quotes(stop, stop.at), stop.at)
@@ -792,7 +792,7 @@ def _other_parts(stop: _Stop) -> _Fault | None:
 
 
 _READERS = (
-    *(_conflict, _space, _block_text, _anchor, _open_or_stray),
+    *(_conflict, _space, _block_text, _anchor, _unclosed_or_unopened),
     *(_colon, _indentation, _value, _other_parts),
 )
 """The searches for the cause of a syntax error; the first one that finds it decides."""

@@ -13,13 +13,14 @@ from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors.script import yaml_syntax
+from smachac.frontend.text.yaml_errors import of_spaces
 from smachac.frontend.text.yaml_outline import (
     Row,
+    dangling_count,
     form_of,
     outline,
     rows_of,
     steps_in,
-    strays_of,
     unusual_steps,
 )
 from smachac.frontend.text.yaml_tree import OffsetMap
@@ -70,7 +71,7 @@ def best_move(text: str, index: int, *, stops: bool) -> Move | None:
     rows, here = _window(every, at)
     usual = steps_in(rows)
     whole = outline(rows)
-    before, strays = form_of(whole), strays_of(whole)
+    before, dangling = form_of(whole), dangling_count(whole)
     if before < _BAD or (stops and whole is not None):
         return None
     ranked: list[tuple[float, Move]] = []
@@ -80,8 +81,8 @@ def best_move(text: str, index: int, *, stops: bool) -> Move | None:
         form = form_of(new)
         if form > before - _BAD / 2 or form >= (_BAD if stops else _BAD / 2):
             continue
-        lost = strays_of(new)
-        if not stops and moved[move.first].dashes and lost >= strays:
+        lost = dangling_count(new)
+        if not stops and moved[move.first].dashes and lost >= dangling:
             continue
         cost = form + 0.4 * lost + 0.11 * unusual_steps(moved, usual)
         ranked.append((cost + 0.001 * (move.last - move.first) + 0.0001 * abs(move.by), move))
@@ -252,7 +253,3 @@ def _shown(row: Row) -> str:
     dash = "- " if row.dashes else ""
     text = f"{row.key}:" if row.key and dash else row.key or row.value
     return f"`{dash}{text}`"
-
-
-def of_spaces(number: int) -> str:
-    return f"{number} space{'s' * (number != 1)}"

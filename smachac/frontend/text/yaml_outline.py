@@ -287,7 +287,7 @@ def _of_state(part: Part, around: str) -> float:
 _TARGET = re.compile(r":\s*([A-Za-z_][\w.-]*)")
 
 
-def strays_of(root: Part | None) -> int:
+def dangling_count(root: Part | None) -> int:
     """The number of transitions that lead to a state in another list of states."""
     lists = [] if root is None else list(_lists_of(root))
     every = {name for states in lists for name, _ in _named(states)}

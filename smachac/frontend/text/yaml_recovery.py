@@ -19,7 +19,12 @@ from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors.script import yaml_syntax
 from smachac.frontend.schema import KEY_FACTS, LONG, OUTCOME_FACTS, VARIABLE_FACTS, VARIABLES
 from smachac.frontend.text.fields import PRESET_FIELDS
-from smachac.frontend.text.yaml_errors import CONFLICT, SPACE_MISSING, lost_of_block_text
+from smachac.frontend.text.yaml_errors import (
+    CONFLICT,
+    SPACE_MISSING,
+    line_end,
+    lost_of_block_text,
+)
 from smachac.frontend.text.yaml_indents import best_move, move_finding, moved_text
 from smachac.frontend.text.yaml_tree import (
     Entry,
@@ -183,18 +188,13 @@ def _lines(text: str, index: int) -> _Lines:
         if not start or not above[begin:].rstrip().endswith(_GOES_ON):
             break
         start = begin
-    end = _line_end(text, index)
+    end = line_end(text, index)
     for _ in range(_MOST_LINES):
         line = text[text.rfind("\n", 0, end) + 1 : end].rstrip()
         if end >= len(text) or not line.endswith(_GOES_ON):
             break
-        end = _line_end(text, end + 1)
+        end = line_end(text, end + 1)
     return _Lines(start, end)
-
-
-def _line_end(text: str, index: int) -> int:
-    end = text.find("\n", index)
-    return len(text) if end < 0 else end
 
 
 def _ranked(text: str, lines: _Lines) -> list[tuple[float, _Change]]:
@@ -424,10 +424,10 @@ def _finding(
         message, at = SPACE_MISSING, at - len(left) - 1
     elif sign in "[{" or (sign in "\"'" and _starts(text, at)):
         message, end = f"a `{sign}` is missing before `{right}`", at + len(right)
-    elif sign == ":" and not text[at : _line_end(text, at)].strip():
+    elif sign == ":" and not text[at : line_end(text, at)].strip():
         message, at = "a `:` is missing after this key", at - len(left)
         piece = repaired[repaired.rfind("\n", 0, change.at) + 1 : change.at + 1].strip()
-    elif not text[at : _line_end(text, at)].strip():
+    elif not text[at : line_end(text, at)].strip():
         message, at = f"a `{sign}` is missing at the end of this line", at - 1
     else:
         message, at = f"a `{sign}` is missing after `{left}`", at - len(left)

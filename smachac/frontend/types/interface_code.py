@@ -7,7 +7,8 @@ from typing import TypeAlias
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source, Span, Word
-from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
+from smachac.frontend import schema
+from smachac.frontend.errors.script import Choice, Owner, unknown_variable, wrong_shape
 from smachac.frontend.text.unquoted import check_unquoted, is_name
 from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Tree
 from smachac.frontend.types.value_facts import check_language
@@ -73,7 +74,8 @@ def classes_by_language(section: Section, report: Report) -> dict[str, dict[str,
             if name not in CLASS_FIELDS:
                 word = Word(name, entry.key.span)
                 owner = Owner("code", "the code of a state type")
-                report.append(unknown_variable(word, owner, CLASS_FIELDS))
+                choice = Choice(owners=schema.special_owners(name))
+                report.append(unknown_variable(word, owner, CLASS_FIELDS, choice))
             elif isinstance(entry.value, Scalar):
                 given[name] = str(entry.value.value)
                 if language == "cpp":

@@ -15,7 +15,7 @@ from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree, parse
 from smachac.frontend.types.type_annotations import read_type
 from smachac.ir.nodes import Key, Outcome, StateKind, Value
 from smachac.ir.types import ANY, Type
-from smachac.pysource.jinja_tags import meta_block, tags
+from smachac.pysource.modules.jinja_tags import meta_block, tags
 from smachac.records import dataclass
 
 _BODY = re.compile(r"\{%[-+]?\s*block\s+body\b")

@@ -55,7 +55,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.ir.types import ANY, Type, optional
-from smachac.pysource.template_sources import TEMPLATE_FILES
+from smachac.pysource.templates.template_sources import TEMPLATE_FILES
 from smachac.records import replace
 
 TYPE_CHECKING = False  # annotations only: most state types have no class
@@ -152,7 +152,6 @@ def _read_interface(
         output_keys=_keys(sections["output_keys"], report),
         outcomes=_outcomes(sections["outcomes"], report),
         needs=_needed_variables(sections, report),
-        outcomes_place=_outcomes_place(tree, fields),
         writes=_writes(sections, report),
         given=given,
         claims=tuple(word.text for word in claims),
@@ -194,13 +193,6 @@ def _without_outcomes(name: str, tree: Map, used: Section) -> Diagnostic:
     owner = Owner(name, f"the interface `{name}`")
     example = f"[{', '.join(str(entry.key.value) for entry in used)}]" if used else ""
     return missing_variable(tree.entries[0].key.span, "outcomes", owner, example=example)
-
-
-def _outcomes_place(tree: Map, fields: Mapping[str, Tree]) -> Span | None:
-    """The place of the outcomes in an interface, or of its first field."""
-    if "outcomes" in fields:
-        return fields["outcomes"].span
-    return tree.entries[0].key.span if tree.entries else None
 
 
 def _section(name: str, tree: Tree | None, report: Report) -> Section:

@@ -9,8 +9,8 @@ from smachac.diagnostics.source import Source, Word
 from smachac.diagnostics.spelling import guesser_of, respelt
 from smachac.frontend.errors.script import Owner, bad_type, unknown_variable
 from smachac.frontend.text.fields import PRESET_FIELDS, as_pairs, is_long_form
+from smachac.frontend.text.type_names import WORD, Aliases, field_name, filled
 from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Tree, is_known_wrong
-from smachac.frontend.types.type_names import WORD, Aliases, field_name, filled
 from smachac.ir.types import WORDS, Type, parse_type, unknown_words
 from smachac.records import replace
 

@@ -6,7 +6,7 @@ import ast
 import builtins
 from collections.abc import Iterator
 
-from smachac.pysource.syntax_tree import walk_code
+from smachac.pysource.modules.syntax_tree import walk_code
 
 KNOWN_NAMES = frozenset(dir(builtins)) | frozenset([
     "__file__", "__path__", "__builtins__", "__annotations__", "__class__", "__module__",

@@ -17,8 +17,8 @@ from smachac.pysource.machines.project import Repository
 from smachac.pysource.machines.proven_reads import doubtful_places
 from smachac.pysource.machines.state_comments import StateComments
 from smachac.pysource.machines.values import Class, Function, Instance, ModuleValue, Value
-from smachac.pysource.modules import Module, module_of
-from smachac.pysource.user_code import UserCode
+from smachac.pysource.modules.modules import Module, module_of
+from smachac.pysource.modules.user_code import UserCode
 from smachac.records import replace
 
 

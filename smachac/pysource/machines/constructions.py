@@ -47,8 +47,8 @@ from smachac.pysource.machines.values import (
     sequence,
     truth,
 )
-from smachac.pysource.source import PythonText
-from smachac.pysource.syntax_tree import walk_code
+from smachac.pysource.modules.source import PythonText
+from smachac.pysource.modules.syntax_tree import walk_code
 from smachac.records import dataclass, field, replace
 
 _FUNCTIONS = ("cb", "callback", "handler")

@@ -19,7 +19,7 @@ from smachac.pysource.machines.values import (
     alternatives,
     truth,
 )
-from smachac.pysource.syntax_tree import walk_code
+from smachac.pysource.modules.syntax_tree import walk_code
 from smachac.records import replace
 
 

@@ -60,7 +60,7 @@ from smachac.pysource.machines.values import (
     truth,
 )
 from smachac.pysource.machines.wrong_calls import Signature, signature_of, wrong_call
-from smachac.pysource.syntax_tree import walk_code
+from smachac.pysource.modules.syntax_tree import walk_code
 from smachac.records import dataclass, field, replace
 
 MOST_STEPS, MOST_TIMES = 150_000, 2

@@ -12,7 +12,7 @@ import re
 from collections.abc import Mapping
 
 from smachac.diagnostics.source import Span
-from smachac.pysource.life_cycle import LifeCycle
+from smachac.pysource.flow.life_cycle import LifeCycle
 from smachac.pysource.machines.framework import (
     Framework,
     Run,

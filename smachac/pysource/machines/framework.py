@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from smachac.diagnostics.source import Span
-from smachac.pysource.life_cycle import LifeCycle
+from smachac.pysource.flow.life_cycle import LifeCycle
 from smachac.pysource.machines.heap import Added, Children
 from smachac.pysource.machines.values import (
     NONE,

@@ -12,7 +12,7 @@ from collections.abc import Hashable, Iterator
 from typing import NamedTuple
 
 from smachac.pysource.machines.values import Creation, Frame, Function, Instance, Value
-from smachac.pysource.syntax_tree import walk_code
+from smachac.pysource.modules.syntax_tree import walk_code
 
 MOST_STEPS = 30
 """The most calls through which a value is followed."""

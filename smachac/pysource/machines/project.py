@@ -31,8 +31,8 @@ from smachac.pysource.machines.values import (
     Value,
 )
 from smachac.pysource.machines.wrong_calls import Signature
-from smachac.pysource.python2 import NotInstalledError, python2_text
-from smachac.pysource.source import PythonText, python_text
+from smachac.pysource.modules.python2 import NotInstalledError, python2_text
+from smachac.pysource.modules.source import PythonText, python_text
 
 
 class ModuleParser(Protocol):

@@ -9,8 +9,8 @@ from collections.abc import Iterator, Sequence
 from smachac.diagnostics.source import Span
 from smachac.pysource.machines.dead_code import assigned
 from smachac.pysource.machines.values import Class, Function, Value
-from smachac.pysource.source import PythonText
-from smachac.pysource.syntax_tree import walk_code
+from smachac.pysource.modules.source import PythonText
+from smachac.pysource.modules.syntax_tree import walk_code
 
 _ERRORS = frozenset(["KeyError", "LookupError", "AttributeError", "Exception", "BaseException"])
 """The errors that a handler of a missing key can name."""

@@ -31,7 +31,7 @@ from smachac.pysource.machines.values import (
     Value,
     alternatives,
 )
-from smachac.pysource.syntax_tree import walk_code
+from smachac.pysource.modules.syntax_tree import walk_code
 from smachac.records import dataclass
 
 T = TypeVar("T")

@@ -15,7 +15,7 @@ from smachac.diagnostics.source import Span
 from smachac.records import dataclass, field
 
 if TYPE_CHECKING:
-    from smachac.pysource.source import PythonText
+    from smachac.pysource.modules.source import PythonText
 
 MOST_ALTERNATIVES = 8
 """The most values of which one is known to be right; more are unknown."""

@@ -12,11 +12,11 @@ from smachac.driver.python_machines import Built, PythonProject
 from smachac.frontend.files import Disk, lies_inside
 from smachac.ir.nodes import Leaf, Node
 from smachac.ir.traversal import walk
-from smachac.pysource.coverage import unknown_states
 from smachac.pysource.machines.constructions import Constructions
+from smachac.pysource.machines.coverage import unknown_states
 from smachac.pysource.machines.graph import ELSEWHERE, Graph
 from smachac.pysource.machines.project import module_text
-from smachac.pysource.python2 import looks_like_python2
+from smachac.pysource.modules.python2 import looks_like_python2
 from smachac.refactor.imports.project import (
     Imported,
     Incomplete,

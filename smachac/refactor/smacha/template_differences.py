@@ -13,7 +13,7 @@ from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend import schema
 from smachac.frontend.types import smacha_meta
-from smachac.pysource.jinja_tags import meta_block, tags
+from smachac.pysource.modules.jinja_tags import meta_block, tags
 from smachac.records import dataclass, field
 from smachac.refactor.smacha.script_differences import SmachaDifference
 from smachac.targets.python.buffers import APPENDED, KEYED, PREPENDED

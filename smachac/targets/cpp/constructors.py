@@ -13,8 +13,8 @@ from typing import Literal
 
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.ir.class_facts import ClassFault, FaultKind
-from smachac.pysource.cpp_text import Part
 from smachac.records import dataclass
+from smachac.targets.cpp.cpp_text import Part
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.types import UnportableError
 from smachac.targets.cpp.user_classes import REFUSED, ClassCode, parameter_type

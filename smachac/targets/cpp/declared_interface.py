@@ -16,16 +16,16 @@ from smachac.ir.class_facts import DID_YOU_MEAN, SUGGESTION, ClassFault, FaultKi
 from smachac.ir.nodes import Key, StateType
 from smachac.ir.types import STRUCTS, unknown_words
 from smachac.pysource.class_reader import NO_EXECUTE
-from smachac.pysource.cpp_text import LONGEST, Part, class_head, outcome_words, without_literals
-from smachac.pysource.modules import CLASS_ELSEWHERE, NO_CLASS
-from smachac.pysource.other_modules import file_with
-from smachac.pysource.user_code import Declared, Difference, Words
+from smachac.pysource.modules.modules import CLASS_ELSEWHERE, NO_CLASS
+from smachac.pysource.modules.other_modules import file_with
+from smachac.pysource.modules.user_code import Declared, Difference, Words
 from smachac.records import dataclass, replace
 from smachac.targets.cpp.constructors import (
     EXTRA_PARAMETER,
     NO_CONSTRUCTOR_PARAMETER,
     WRONG_CONSTRUCTOR,
 )
+from smachac.targets.cpp.cpp_text import LONGEST, Part, class_head, outcome_words, without_literals
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.member_faults import WRONG_PARAMETERS, member_faults, signature_faults
 from smachac.targets.cpp.records import project_names

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
-from smachac.pysource.cpp_text import Part
+from smachac.targets.cpp.cpp_text import Part
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.user_classes import REFUSED, ClassCode
 

@@ -14,8 +14,8 @@ from smachac.diagnostics.spelling import words_of
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault, FaultKind
 from smachac.ir.outcome_names import PREEMPTED, is_failure
-from smachac.pysource.cpp_text import Part
 from smachac.targets.cpp.constructors import constructor_faults
+from smachac.targets.cpp.cpp_text import Part
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.key_members import unknown_members
 from smachac.targets.cpp.unused_calls import UnusedCall, unused_call

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
 
 from smachac.analysis.type_inference import infer
+from smachac.analysis.type_lattice import inside
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, Node, StateType
@@ -318,7 +319,7 @@ def converts(given: Type, wanted: Type) -> bool:
     """Whether `smachac::convert` converts one plain type to the other."""
     if given == wanted or wanted == ANY:
         return True
-    inner, outer = _inside(given), _inside(wanted)
+    inner, outer = inside(given), inside(wanted)
     match given.name, wanted.name:
         case "optional", "optional":
             return converts(inner, outer)
@@ -337,11 +338,6 @@ def converts(given: Type, wanted: Type) -> bool:
         case "dict", "dict":
             return converts(inner, outer)
     return False
-
-
-def _inside(type_: Type) -> Type:
-    first = type_.args[0] if type_.args else ANY
-    return first if isinstance(first, Type) else ANY
 
 
 def _place_of(node: Node, name: str) -> Span:

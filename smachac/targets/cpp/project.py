@@ -262,8 +262,3 @@ ament_export_targets(export_{name})
 ament_export_dependencies(Threads)
 ament_package()
 """
-
-
-CLANG_FORMAT = "BasedOnStyle: LLVM\nColumnLimit: 0\n"
-"""The `.clang-format` that does not change generated code: the style of LLVM without a line length.
-The headers of the runtime have the style of LLVM with 100 columns."""

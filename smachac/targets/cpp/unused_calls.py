@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from smachac.diagnostics.source import Word
 from smachac.frontend.loader import Library
-from smachac.pysource.cpp_text import Part, without_literals
+from smachac.targets.cpp.cpp_text import Part, without_literals
 
 _CALL = re.compile(
     r"(?:\A|(?<=[;{}]))\s*(?P<call>(?P<object>\w+)\s*(?:\.|->)\s*(?P<method>\w+)\s*\()"

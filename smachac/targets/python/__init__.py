@@ -12,8 +12,8 @@ from __future__ import annotations
 from smachac.diagnostics.diagnostic import Report
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, Machine, StateType
-from smachac.pysource.ros_names import Ros
-from smachac.pysource.user_code import Declared
+from smachac.pysource.modules.ros_names import Ros
+from smachac.pysource.modules.user_code import Declared
 from smachac.targets import BuildContext, Files, OptionError, Target, stem
 from smachac.targets.errors import unsupported_by_target
 from smachac.targets.python import ros

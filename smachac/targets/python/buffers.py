@@ -19,7 +19,7 @@ from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
 from smachac.ir.nodes import Leaf, Node, StateType
-from smachac.pysource.ros_names import Ros
+from smachac.pysource.modules.ros_names import Ros
 from smachac.records import dataclass, field, replace
 from smachac.targets import BuildContext
 from smachac.targets.errors import defined_twice, python_2_code

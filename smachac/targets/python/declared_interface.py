@@ -10,7 +10,7 @@ from smachac.frontend.loader import Library
 from smachac.ir.class_facts import STATE_PARAMETERS, ClassFacts, ClassFault, FaultKind, Parameter
 from smachac.ir.nodes import StateType
 from smachac.pysource.class_reader import NO_OUTCOMES
-from smachac.pysource.user_code import Declared
+from smachac.pysource.modules.user_code import Declared
 from smachac.targets.python.ros import has_node_parameter
 
 NO_PARAMETER = FaultKind(

@@ -10,7 +10,7 @@ from textwrap import indent
 from smachac.ir.nodes import DEFINITION_KINDS, Leaf, Machine
 from smachac.ir.python_code import parse_module
 from smachac.ir.traversal import expressions, walk
-from smachac.pysource.ros_names import MESSAGES, MODULE_OF, ROS_MODULES, Ros, message_module
+from smachac.pysource.modules.ros_names import MESSAGES, MODULE_OF, ROS_MODULES, Ros, message_module
 from smachac.records import dataclass, field
 from smachac.targets.python.formatter import WIDTH, laid_out, names
 

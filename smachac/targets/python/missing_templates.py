@@ -9,7 +9,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Machine, StateType
-from smachac.pysource.user_code import user_types
+from smachac.pysource.modules.user_code import user_types
 
 
 def missing_templates(machine: Machine, library: Library) -> Iterator[Diagnostic]:

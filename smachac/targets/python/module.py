@@ -12,8 +12,8 @@ from smachac.diagnostics.diagnostic import Report, has_errors
 from smachac.frontend.errors.references import template_error
 from smachac.ir.nodes import Machine
 from smachac.ir.python_code import parse_module
-from smachac.pysource.ros_names import Ros
-from smachac.pysource.template_sources import template_finder, uses_own_templates
+from smachac.pysource.modules.ros_names import Ros
+from smachac.pysource.templates.template_sources import template_finder, uses_own_templates
 from smachac.targets import BuildContext, made_by
 from smachac.targets.errors import python_2_code
 from smachac.targets.python.additions import MODULE, Additions

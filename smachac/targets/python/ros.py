@@ -13,7 +13,7 @@ from smachac.frontend.loader import Library
 from smachac.frontend.types.smacha_meta import extended
 from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import expressions, walk
-from smachac.pysource.ros_names import ROS_VERSIONS, Ros
+from smachac.pysource.modules.ros_names import ROS_VERSIONS, Ros
 from smachac.records import dataclass
 from smachac.targets import BuildContext, OptionError
 from smachac.targets.errors import unsupported_by_target

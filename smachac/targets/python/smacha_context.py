@@ -13,7 +13,7 @@ from typing import Any
 from smachac.ir.nodes import Concurrence, Container, Data, Expression, Leaf, Node, Struct, Variable
 from smachac.ir.script_code import script_code
 from smachac.ir.traversal import own_outcomes, remapping
-from smachac.pysource.ros_names import Ros
+from smachac.pysource.modules.ros_names import Ros
 from smachac.targets.python.formatter import Doc, call, docstring, flat, literal, string
 from smachac.targets.python.ros import replaced_names, ros_type
 

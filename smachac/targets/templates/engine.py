@@ -14,7 +14,7 @@ from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
-from smachac.pysource.jinja_tags import tags
+from smachac.pysource.modules.jinja_tags import tags
 
 if TYPE_CHECKING:
     from jinja2 import Template, nodes

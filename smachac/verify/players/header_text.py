@@ -10,8 +10,8 @@ import re
 from collections.abc import Iterator
 
 from smachac.diagnostics.source import Source
-from smachac.pysource.cpp_text import without_literals
 from smachac.records import dataclass, field
+from smachac.targets.cpp.cpp_text import without_literals
 
 _TOKEN = re.compile(
     r"\bnamespace\s+(?P<space>[\w:]+)\s*\{"

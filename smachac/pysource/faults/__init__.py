@@ -1,0 +1,1 @@
+"""Faults in the class of a state type: unknown names and members, wrong calls."""

@@ -1,0 +1,1 @@
+"""Control flow of the functions of a class: paths, returns, local variables."""

@@ -1,0 +1,1 @@
+"""Modules of the user: their text, their names, their imports."""

@@ -1,0 +1,1 @@
+"""Values in the class of a state type: what it reads of userdata and messages, and writes."""
