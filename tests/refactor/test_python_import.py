@@ -376,6 +376,26 @@ def test_without_a_git_repository_the_folder_of_the_module_is_named(
     assert "code" not in (tmp_path / "project/smachac.toml").read_text("utf-8")
 
 
+def test_a_folder_with_the_modules_of_several_machines_is_named_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    state = "import smach\nclass Work(smach.State):\n    def __init__(self):\n"
+    state += "        smach.State.__init__(self, outcomes=['ok'])\n"
+    machine = "{0} = smach.StateMachine(outcomes=['done'])\nwith {0}:\n"
+    machine += "    smach.StateMachine.add('A', {0}_states.Work(), {{'ok': 'done'}})\n"
+    text = "import smach, left_states, right_states\n"
+    (tmp_path / "machine.py").write_text(text + machine.format("left") + machine.format("right"))
+    for name in ("left_states.py", "right_states.py"):
+        (tmp_path / name).write_text(
+            state + "    def execute(self, userdata):\n        return 'ok'\n"
+        )
+    monkeypatch.chdir(tmp_path)
+    assert main(["import", "machine.py", "-o", "project"]) == 0
+    told = capsys.readouterr().out
+    assert told.count("which has the module `left_states` and 1 more, is outside the project") == 1
+    assert told.count("PYTHONPATH") == 1
+
+
 @pytest.mark.parametrize("name", HOSTILE)
 def test_hostile_files(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(evaluator, "MOST_STEPS", 20_000)

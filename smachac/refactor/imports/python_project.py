@@ -58,7 +58,7 @@ def import_python(
     made = script_files(machines, folder, ros, built_in_names())
     made.lost += _lost_in_modules(made, ros, disk)
     folders, outside = _code_folders(made, folder)
-    made.lost += [_not_found(made.main, name) for name in outside]
+    made.lost += _not_found(machines[0].root.span, outside)
     made.texts["smachac.toml"] = settings(folders, ros)
     texts, proofs = completed(made, path, folder, (item.code for item in report), disk)
     return Imported(
@@ -133,31 +133,31 @@ def _unknown(graph: Graph) -> tuple[tuple[Span, str], ...]:
     return tuple(places.items())
 
 
-def _code_folders(made: ScriptFiles, folder: Path) -> tuple[list[str], list[str]]:
-    """The folders with the modules of the user, from that of the project; and the modules in those
-    that a project file cannot name, as they are outside its git repository."""
+def _code_folders(made: ScriptFiles, folder: Path) -> tuple[list[str], dict[str, list[str]]]:
+    """The folders with the modules of the user, from that of the project; and those that a project
+    file cannot name, as they are outside its git repository, with their modules."""
     above = (folder.absolute(), *folder.absolute().parents)
     root = next((path for path in above if (path / ".git").exists()), folder)
-    inside = {
-        name: place for name, place in made.modules.items()
-        if lies_inside(Path(place), root)
-    }  # fmt: skip
-    return (
-        [relative(place, folder) for place in inside.values() if Path(place) != folder],
-        [name for name in made.modules if name not in inside],
-    )
+    inside: list[str] = []
+    outside: dict[str, list[str]] = {}
+    for name, place in made.modules.items():
+        if not lies_inside(Path(place), root):
+            outside.setdefault(place, []).append(name)
+        elif Path(place) != folder:
+            inside.append(relative(place, folder))
+    return inside, outside
 
 
-def _not_found(main: Mapping[str, PythonMachine], module: str) -> Lost:
-    first = next(iter(main.values()))
-    folder = first.constructions.modules[module]
-    return Lost(
-        span=first.root.span,
-        text=f"the folder of the module `{module}` is outside the project and no git repository has"
-        " both",
-        help=f"set PYTHONPATH={folder or '.'} for the programs, or import into a folder of the"
-        " same git repository",
-    )
+def _not_found(span: Span, outside: Mapping[str, Sequence[str]]) -> Iterator[Lost]:
+    for folder, names in outside.items():
+        more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+        yield Lost(
+            span=span,
+            text=f"the folder `{folder or '.'}`, which has the module `{names[0]}`{more}, is"
+            " outside the project, and no git repository has both",
+            help=f"set PYTHONPATH={folder or '.'} for the programs, or import into a folder of the"
+            " same git repository",
+        )
 
 
 def _lost_in_modules(made: ScriptFiles, ros: int, disk: Disk) -> Iterator[Lost]:
