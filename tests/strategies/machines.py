@@ -76,7 +76,7 @@ TYPES = types() | st.just(ANY)
 ORIGINS: st.SearchStrategy[Origin] = st.sampled_from(["written", "implicit", "connector"])
 BOOLEANS = st.booleans()
 COUNTS = st.integers(0, 2)
-JOINS: st.SearchStrategy[Literal["all", "any"]] = st.sampled_from(["all", "any"])
+JOINS: st.SearchStrategy[Literal["all", "any", "rule"]] = st.sampled_from(["all", "any", "rule"])
 
 
 class _Drawing:

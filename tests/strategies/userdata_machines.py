@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator as Iter
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 from hypothesis import strategies as st
 
@@ -49,6 +49,7 @@ _exits = st.lists(st.sampled_from(OUTCOMES), min_size=1, max_size=2, unique=True
 _sets = st.lists(st.sampled_from(NAMES), max_size=3, unique=True)
 _few = st.integers(1, 3)
 _flag = st.booleans()
+_JOINS: st.SearchStrategy[Literal["all", "any", "rule"]] = st.sampled_from(["all", "any", "rule"])
 
 
 def value(data: Any) -> Value:
@@ -151,7 +152,7 @@ class _Building:
             children=tuple(children),
             default_outcome=exits[0],
             rules=tuple(rules),
-            join="any" if self.draw(_flag) else "all",
+            join=self.draw(_JOINS),
             **common,
         )
 
