@@ -272,20 +272,23 @@ def version_faults(machine: Machine, library: Library) -> Report:
 
 def template_faults(machine: Machine, library: Library) -> Report:
     """The findings in templates of the user, which are rendered as for the Python program. Code for
-    the other version of ROS is a warning, see `version_faults`."""
+    the other version of ROS is a warning, see `version_faults`. States with code for YASMIN or
+    FlexBE alone, which these targets build, are classes here."""
     from smachac.pysource.templates.template_sources import uses_own_templates
+    from smachac.targets.native import as_python, native_only
     from smachac.targets.python import TARGET
     from smachac.targets.python.missing_templates import missing_templates
     from smachac.targets.python.ros import needs_other_version
 
     if not uses_own_templates(machine, library):
         return [*missing_templates(machine, library)]
+    program = as_python(Checked(machine), native_only(machine))
     found: Report = []
     lacking: Report = []
     for ros in dict.fromkeys((library.ros, *ROS_VERSIONS)):
         found = []
         context = BuildContext(library=library, options={"ros": str(ros)})
-        made = TARGET.emit(Checked(machine), context, found)
+        made = TARGET.emit(program, context, found)
         if ros == library.ros:
             lacking = [item for item in found if needs_other_version(item)]
         if made:
