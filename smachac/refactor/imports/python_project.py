@@ -55,7 +55,7 @@ def import_python(
         return Imported(report=report, is_read=is_read, incomplete=incomplete, names=names,
                         all_names=all_names, vain=vain)  # fmt: skip
     ros = max(machine.constructions.ros for machine in machines)
-    made = script_files(machines, folder, ros, built_in_names())
+    made = script_files(machines, path, folder, ros, built_in_names())
     made.lost += _lost_in_modules(made, ros, disk)
     folders, outside = _code_folders(made, folder)
     made.lost += _not_found(machines[0].root.span, outside)

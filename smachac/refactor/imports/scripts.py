@@ -104,11 +104,12 @@ class ScriptFiles:
 
 
 def script_files(
-    machines: Sequence[PythonMachine], folder: Path, ros: int, taken: Iterable[str]
+    machines: Sequence[PythonMachine], path: Path, folder: Path, ros: int, taken: Iterable[str]
 ) -> ScriptFiles:
-    """The project with the scripts of some machines. `folder` is that of the project, `ros` the
-    version of ROS that the code uses, 0 for none, `taken` the names of the built-in state types."""
-    writer = _Writer(folder, ros, taken)
+    """The project with the scripts of some machines of the file `path`. `folder` is that of the
+    project, `ros` the version of ROS that the code uses, 0 for none, `taken` the names of the
+    built-in state types."""
+    writer = _Writer(path, folder, ros, taken)
     stems = ["main"] if len(machines) == 1 else [machine.name for machine in machines]
     writer.script_names.update(stem.casefold() for stem in stems)
     for machine, stem in zip(machines, stems, strict=True):
@@ -160,8 +161,8 @@ class _Scope:
 
 
 class _Writer:
-    def __init__(self, folder: Path, ros: int, taken: Iterable[str]) -> None:
-        self.folder = folder
+    def __init__(self, path: Path, folder: Path, ros: int, taken: Iterable[str]) -> None:
+        self.path, self.folder = path, folder
         self.ros = ros
         containers = (*schema.CONTAINERS, BASE)
         self.types = StateTypes(self.place, [*taken, *containers])
@@ -175,6 +176,12 @@ class _Writer:
     def place(self, span: Span) -> str:
         """A place as text: `parcels.py:38`, from the folder of the project."""
         return f"{in_comment(span.source.name, self.folder)}:{span.line}"
+
+    def state_place(self, span: Span) -> str:
+        """The place of a state. The imported file has no folder: each file begins with its path."""
+        if span.source.name != str(self.path):
+            return self.place(span)
+        return f"{in_comment(self.path.name, Path())}:{span.line}"
 
     def files(self) -> ScriptFiles:
         made = self.made
@@ -261,7 +268,7 @@ class _Writer:
             states = [f"{inside}states:", *self.states(names, node, scope, inside)]
         fields |= connections
         return [
-            f"{indent}- {name_text(node.name)}:  # {self.place(node.span)}",
+            f"{indent}- {name_text(node.name)}:  # {self.state_place(node.span)}",
             *(f"{inside}{key}: {text}" for key, text in fields.items()),
             *states,
         ]

@@ -61,7 +61,7 @@ def import_xml(path: Path, folder: Path, disk: Disk, wanted: str | None = None) 
     if places:
         return Imported(report=report, names=[root.name], all_names=[root.name],
                         incomplete=[Incomplete(name=root.name, unknown=places)])  # fmt: skip
-    made = script_files([_machine(machine)], folder, 0, built_in_names())
+    made = script_files([_machine(machine)], path, folder, 0, built_in_names())
     made.lost += machine.lost
     made.texts["smachac.toml"] = settings([], 0)
     texts, proofs = completed(made, path, folder, (), disk)
