@@ -275,13 +275,14 @@ def template_faults(machine: Machine, library: Library) -> Report:
     the other version of ROS is a warning, see `version_faults`. States with code for YASMIN or
     FlexBE alone, which these targets build, are classes here."""
     from smachac.pysource.templates.template_sources import uses_own_templates
-    from smachac.targets.native import as_python, native_only
     from smachac.targets.python import TARGET
     from smachac.targets.python.missing_templates import missing_templates
     from smachac.targets.python.ros import needs_other_version
 
     if not uses_own_templates(machine, library):
         return [*missing_templates(machine, library)]
+    from smachac.targets.native import as_python, native_only
+
     program = as_python(Checked(machine), native_only(machine))
     found: Report = []
     lacking: Report = []
