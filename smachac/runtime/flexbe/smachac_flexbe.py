@@ -373,7 +373,7 @@ class _Container(_Node):
         self.root.wake.set()
 
     def confirm(self, name, number):
-        """Prepare the states for a run. FlexBE tells them of it."""
+        """Prepare the states for a run. FlexBE calls this before the first tick."""
         self._set_up_states()
         super().confirm(name, number)
 
