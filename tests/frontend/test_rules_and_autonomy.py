@@ -59,6 +59,11 @@ def test_faults(name: str) -> None:
     assert any(help in (item.finding.help or "") for item in found), found
 
 
+def test_a_level_for_an_unknown_outcome_is_no_transition() -> None:
+    (found,) = report_of("rule", WHOLE, "{doen: High}")
+    assert found.finding.effect == "the level of autonomy has no effect"
+
+
 @pytest.mark.parametrize("join", ["rule", "all", "any"])
 def test_rules_in_a_list_have_no_fault(join: str) -> None:
     report = report_of(join, WHOLE, "{done: Low}")

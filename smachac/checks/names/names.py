@@ -420,6 +420,7 @@ def _unknown_in_autonomy(path: str, child: Node) -> Iterator[Finding]:
                 message=f"`{child.name}` has no outcome `{one.outcome}`",
                 arguments=(own_name(child, one.span), one.outcome),
                 help=did_you_mean(guesser(names).unique_match(one.outcome)) or "remove this level",
+                effect="the level of autonomy has no effect",
                 related=calls(child, one.span),
                 node=path,
             )
